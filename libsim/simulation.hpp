@@ -31,15 +31,15 @@ namespace sim {
 struct TargetRegion {
   Vec3d centre_m{};
   double radius_m = 0;
-  int inside = 0;  ///< level 0 .. 3; levels above N - 1 act as N - 1
-  int outside = 0;
+  int inside = 0;   ///< level 0 .. 3, limited to SimulationOptions::levels - 1
+  int outside = 0;  ///< likewise
 };
 
 /// Options of temporal acceleration (ViP-Fluid, Algorithm 3), such as the source of tau. Methods without
 /// temporal acceleration ignore them, unless `always` is set.
 struct TemporalOptions {
-  /// A constant tau, frames/s. If neither fixed_tau nor fixed_rate is set, tau follows from the times passed
-  /// to Simulation::frame_time.
+  /// A constant tau = mu - a exp(b delta) (Eq. 11), frames/s. If neither fixed_tau nor fixed_rate is set, tau
+  /// follows from the times passed to Simulation::frame_time.
   std::optional<double> fixed_tau;
   std::optional<FrameRate> fixed_rate;  ///< constant mean mu and standard deviation delta of the frame rate,
                                         ///< from which tau follows
@@ -63,9 +63,9 @@ struct SimulationOptions : SolverNumbers {
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
   /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_*
   std::int64_t particle_capacity = 0;
-  /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing merges, only particles
-  /// of `start` that are coarser than level 0 split, and without such particles saliency is measured only for
-  /// outputs and temporal acceleration.
+  /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 no particles merge, and only
+  /// particles of `start` that are coarser than level 0 split. If `start` has no such particles, saliency is
+  /// measured only for outputs and temporal acceleration.
   int levels = most_levels;
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
@@ -225,7 +225,7 @@ struct FrameReport {
   HeatReport heat;
   GuardCounts guards;
   TemporalReport temporal;
-  SeenReport seen;  ///< the last picture given to saliency
+  SeenReport seen;  ///< the last picture that look() passed to saliency
   RelaxedStart start;
   FoamReport foam;
 };

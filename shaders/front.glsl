@@ -1,4 +1,4 @@
-// Include it after targets.glsl.
+// Include this file after targets.glsl, whose functions it calls.
 layout(std430, binding = 2) buffer Front { uint front[]; };
 
 // Lowers front[at] to this particle's index if the sphere's depth at the pixel equals `held`, the pixel's depth.

@@ -1,8 +1,8 @@
-// One direction of a Gaussian over the surface map. A cell holds, in m: x height of the surface above the floor, y
-// radius of the particles there, z length of the ray in water; x and y are 0 without water. Two cells on opposite
-// sides of the centre count together, and only if both have water and their mean height is close to the centre's.
-// Planes are therefore preserved, and a pool does not mix with spray above it. FIRST: the input is the splats of
-// light_splat.comp.
+// One pass, along x or z, of a Gaussian filter over the surface map. A cell holds, in m: x height of the surface above
+// the floor, y radius of the particles there, z length of the ray in water; x and y are 0 without water. Two cells on
+// opposite sides of the centre count together, and only if both have water and their mean height is close to the
+// centre's. Planes are therefore preserved, and a pool does not mix with spray above it. FIRST: the input is the splats
+// of light_splat.comp.
 #include "light.glsl"
 #include "floor_maps.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

@@ -17,7 +17,7 @@ void add_pair(inout Range range, float a, float b, float weight) {
   float both = near + far;
   if (near > range.width) {
     // With n in front of the centre and f behind it, both count if n <= 2 f + 3/4 width and f <= 2 n + 3/4 width.
-    // A lone drop never comes here: its depths differ by less than the width.
+    // Samples of a lone drop never come into this branch, because their depths differ by less than the width.
     if (min(a, b) == 0.0 || abs(both) > 0.5 * range.width + (near - far) / 3.0) return;
   } else if (far < -range.width) {
     both = near < -range.width ? -2.0 * range.behind : min(near, range.behind) - range.behind;

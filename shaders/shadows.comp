@@ -10,7 +10,7 @@ layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Surface { vec4 surface[]; };
 layout(std430, binding = 1) writeonly buffer Shadow { vec2 shadow[]; };  // unblocked share; path in the pool, m
 
-const float turned_aside_per_m = 4.0;  // 1/m, light scattered by flying water
+const float turned_aside_per_m = 4.0;  // attenuation of light by scattering in flying water, 1/m
 const float sun_radius = 0.00465;      // angular radius, rad
 const int rays = 8;                    // per cell, between different points of cell and sun
 

@@ -1,5 +1,5 @@
-// One direction of a Gaussian over the thickness grid. Its standard deviation is half the splatted radius of the
-// particle in front. FIRST: the input is in fixed point.
+// One pass, along x or y, of a Gaussian filter over the thickness grid. Its standard deviation is half the splatted
+// radius of the particle in front. FIRST: the input is in fixed point.
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

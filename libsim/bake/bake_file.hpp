@@ -64,7 +64,7 @@ struct BakeHeader {
   std::string backend;          ///< name of the back end that computed the bake
   std::string program_version;  ///< of the program that wrote the bake
   std::int64_t n_star = 0;
-  std::int64_t max_particles = 0;  ///< upper bound for every frame
+  std::int64_t max_particles = 0;  ///< upper bound on the particles of a frame
   std::int64_t frame_count = 0;
   double frame_dt_s = 0;  ///< simulated time between frames
   Vec3d tank_size_m{};

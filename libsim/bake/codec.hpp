@@ -100,9 +100,10 @@ inline constexpr std::uint32_t bake_format = 5;
 void put_facts(ByteWriter& out, const BakeFacts& facts);
 BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels);
 
-/// pack() appends a byte for the kind, then `data` compressed by zstd. It appends `data` unchanged if zstd
-/// does not make them smaller, or at a ratio of 4096 to 1 or more. unpack() refuses any size other than
-/// `size`, and allocates only after checking the ratio, so that memory stays proportional to the file.
+/// pack() appends a byte that says whether the data are compressed, then `data` compressed by zstd. It
+/// appends `data` uncompressed if zstd does not make them smaller, or makes them 4096 times smaller or more.
+/// unpack() refuses data of any size other than `size`. It allocates memory only after checking this ratio,
+/// so that memory stays proportional to the file.
 void pack(ByteSpan data, int zstd_level, Bytes& out);
 void unpack(ByteReader& in, std::size_t size, Bytes& out);
 

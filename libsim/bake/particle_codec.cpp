@@ -26,7 +26,7 @@ double error_of(const Axis& range) {
   return (double(range.max) - double(range.min)) / (2 * double(axis_steps));
 }
 
-/// Maps small differences of either sign to small numbers.
+/// Maps differences of small magnitude and either sign to small unsigned numbers.
 std::uint16_t zigzag(std::uint16_t difference) {
   return static_cast<std::uint16_t>((difference << 1) ^ ((difference & 0x8000) ? 0xffff : 0));
 }

@@ -100,7 +100,8 @@ void PictureRing::decode_loop() {
     const std::uint64_t calls = calls_;
     if (stop_) return;
     if (round != round_) {
-      // If the consumer starts another round now, slots that still get this round's number are dropped.
+      // If the consumer starts another round between these two reads, the next slots carry the number of an
+      // old round, and the consumer drops them.
       round = round_;
       next = first_;
     }

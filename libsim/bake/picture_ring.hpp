@@ -16,15 +16,16 @@ namespace sim {
 /// ring. Taking a ready picture takes no lock: a preempted decoding thread never blocks the consumer.
 class PictureRing {
  public:
-  /// `capacity`: number of pictures, at least 2. 24 pictures are 0.2 s at the pilot's shortest interval (8
-  /// ms), and 22 MB at 640x360.
+  /// `capacity`: number of pictures, at least 2. 24 pictures last 0.2 s if each is shown for 8 ms, and take
+  /// 22 MB at 640 x 360 px.
   explicit PictureRing(const BakeReader& bake, std::size_t capacity = 24);
   ~PictureRing();
   PictureRing(const PictureRing&) = delete;
   PictureRing& operator=(const PictureRing&) = delete;
 
   /// Decodes from `frame` on; after the last picture it continues at `frame` again. Returns when the ring is
-  /// full. Does nothing if `frame` is the next picture anyway and the ring already continues at it.
+  /// full. Does nothing if `frame` is already both the next picture and the one that follows the last
+  /// picture.
   void start(std::int64_t frame);
   /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet. If `frame` is not
   /// among the next 2 x capacity pictures, decoding restarts at `frame`. A picture that cannot be read throws

@@ -68,7 +68,7 @@ struct Outcome {
 };
 
 /// True if the finding measures lost, braked or compressed water: particles outside, braked particles, or the
-/// largest rho / rho_0. Its gate holds with effects too. Other findings, such as where and how fast water
+/// largest rho / rho_0. Its limit applies with effects too. Other findings, such as where and how fast water
 /// comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
 /// The outcome with only those findings for which is_of_stability() is true.
@@ -82,7 +82,7 @@ struct HardCase {
   std::vector<MethodKind> methods;
   /// The quantity that Setting::scale multiplies, such as "30 m/s of the jet"; empty = the case has none.
   const char* scaled;
-  /// simulated time of a frame, if the setting has none, s; of S8 the shortest of its three
+  /// simulated time of a frame, s, if the setting has none; S8 has three frame times: the shortest of them
   double frame_dt_s;
   int iterations;  ///< projections per substep, if the setting has none
   /// base::Error for a missing back end; results of the simulation are never an error.

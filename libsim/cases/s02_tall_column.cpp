@@ -34,13 +34,13 @@ Outcome run_s02(const Setting& setting) {
   lost.asked = 0.03;
   Finding densest = watch.density_finding();
   densest.asked = 1.15;
-  // Single drops leave the surface while the lattice settles.
+  // The limit is 5 d, because single drops leave the surface while the lattice settles.
   Finding rise =
       at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
-                        // An earlier solver had no pre-stabilisation at the frame's beginning: the lattice
-                        // shot up at 7 m/s, and its centre rose by 41 %.
+                        // Detects the defect of an earlier solver that had no pre-stabilisation at the
+                        // frame's beginning: its lattice shot up at 7 m/s, and the centre rose by 41 %.
                         at_most("v_rms", fastest_rms, 2.5, "m/s"),
                         reported("v_rms at last", rms_speed(watch.state()), "m/s")});
 }

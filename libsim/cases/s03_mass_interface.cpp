@@ -27,7 +27,7 @@ Outcome run_s03(const Setting& setting) {
   start.insert(start.end(), fine.begin(), fine.end());
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.08, .outside_m = 0.1 * d});
-  // The lattices settle in the first second.
+  // Not measured: the lattices settle in the first second.
   for (int frame = 0; frame < frames_of(setting, 1) && watch.step(); ++frame) {
   }
   const double early = height_of_coarse(watch.state());

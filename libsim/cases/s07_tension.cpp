@@ -58,8 +58,8 @@ Outcome run_s07(const Setting& setting) {
   const bool levels = traits_of(setting.method).adaptive();
   Outcome out;
   {
-    // The square is a slab between two walls. Without tension all of it flies outwards on straight lines; at
-    // spin x t = 1 it covers twice its area.
+    // The square is a slab between two walls. Without tension all its particles fly outwards on straight
+    // lines; at spin x t = 1 they cover twice the initial area.
     const double side = 12 * size, room = 48 * size, thick = 6 * size;
     Scene scene = tank({room, room, thick}, {1, 1, 1});
     const double low = (room - side) / 2, middle = room / 2;
@@ -85,7 +85,8 @@ Outcome run_s07(const Setting& setting) {
     stir(start, {middle, middle, middle}, [&](const Vec3d& x) {
       return Vec3d{strain * x[0], strain * x[1], -2 * strain * x[2]};
     });
-    // Children of a split may overlap others, and thin water does not separate them.
+    // The limit is lower with levels, because children of a split may overlap other particles, and thin water
+    // does not separate them.
     const double least = levels ? 0.05 : setting.size == Size::Full ? 0.12 : 0.3;
     follow(out, "sphere", setting, scene, start, 0.2 / strain, least);
   }

@@ -15,11 +15,11 @@ namespace {
 
 Outcome run_s12(const Setting& setting) {
   Outcome out;
-  // The corner of cells: three cells of edge 1.1 h from the origin.
+  // Coordinate of a corner of search cells, m: three cell edges of 1.1 h, with h = 2 d.
   constexpr double corner = 3 * 1.1 * 2 * d;
   for (const double place : {1.0, corner}) {
     for (const int n : {2, 64, 1000}) {
-      if (place == corner && n == 1000) continue;  // 1,000 take long, and behave as at the other point
+      if (place == corner && n == 1000) continue;  // takes long; 1,000 particles behave as at 1 m
       Scene scene = tank({2, 2, 2}, {2, 2, 2});
       State start;
       const auto at = static_cast<float>(place);

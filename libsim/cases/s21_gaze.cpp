@@ -46,7 +46,7 @@ Outcome run_s21(const Setting& setting) {
   options.n_star = Pool::n_star;
   options.start = pool.state;
   Watch watch(with_effects(pool.scene, setting), options, {.density = 1.3, .outside_m = 0.1 * d});
-  int beyond = 0;  // frames
+  int beyond = 0;  // number of frames in which more than 5 % of the particles split
   const auto frames_at = [&](const Vec3d& point, int frames, bool valid) {
     for (int frame = 0; frame < frames; ++frame) {
       const auto splits = watch.report().levels.splits;
@@ -78,7 +78,7 @@ Outcome run_s21(const Setting& setting) {
   return watch.outcome(
       {at_most("frames after a jump", followed, 20), at_most("frames after a loss", back, 10),
        at_most("frames in which more than 5 % split", beyond, 0),
-       // With a larger share, the levels would not have followed the gaze.
+       // A larger share would mean that water far from the gaze did not become coarse.
        at_most("particles before the jump over all", coarse, 0.75),
        at_least("mass in the fovea", least_mass, 100, "m_*"),
        at_least("frames without gaze", static_cast<double>(watch.report().guards.gaze_lost), 60),

@@ -71,7 +71,7 @@ Outcome run_s24(const Setting& setting) {
                         reported("growth of the process", resident_mib() - memory, "MiB"),
                         watch.outside_finding(),
                         // Only reported: in the small case the water has the mass of 64 coarsest
-                        // particles, and sometimes none is in the corners.
+                        // particles, and sometimes no water is in the corners where the nozzle takes it.
                         reported("layers left out", static_cast<double>(watch.report().guards.nozzle_waited)),
                         reported("largest rho / rho_0", watch.densest()),
                         at_least("poured", static_cast<double>(watch.report().poured), 1, "m_*")});

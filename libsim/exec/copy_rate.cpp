@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t bytes = std::size_t{256} << 20;
 constexpr std::size_t repeats = 5;
 #ifdef SIM_CUDA
-/// Number of copies per timing: one copy takes a fraction of a millisecond, and waiting for its end some
-/// microseconds.
+/// Number of copies per timing. A copy takes a fraction of a millisecond. Several are timed together, so that
+/// the wait for their end, some microseconds, has little effect.
 constexpr int in_a_row = 8;
 #else
 constexpr int in_a_row = 1;

@@ -8,7 +8,7 @@ namespace sim {
 
 struct GlBufferRef {
   unsigned name = 0;         ///< 0: none
-  std::uint64_t serial = 0;  ///< distinguishes it from a deleted buffer whose name GL reused
+  std::uint64_t serial = 0;  ///< distinguishes the buffer from a deleted one whose name GL reused
   std::size_t bytes = 0;
 
   friend bool operator==(const GlBufferRef&, const GlBufferRef&) = default;

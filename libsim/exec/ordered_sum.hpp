@@ -67,8 +67,8 @@ struct AddRuns {
 /// Computes sums in a fixed order; its memory is allocated at the first sum.
 class OrderedSum {
  public:
-  /// Calls take(f(0) + ... + f(n-1)) once, on the device. f may also write data of index i. `most`: largest n
-  /// without a new allocation.
+  /// Calls take(f(0) + ... + f(n-1)) once, on the device. f(i) may also write data of index i. `most`: memory
+  /// is allocated for sums of up to this many terms.
   template <class F, class Take>
   void operator()(const char* label, int n, int most, F f, Take take) {
     using namespace ordered_sum_detail;

@@ -1,5 +1,5 @@
 #pragma once
-/// Several small passes in one launch. No pass may read or write data that another of them writes.
+/// Several small passes in one launch. No pass may read or write data that another pass of the launch writes.
 
 #include "libsim/exec/space.hpp"
 

@@ -145,8 +145,8 @@ class Scanner {
 void check(cudaError_t status, const char* what);
 /// True if the blocks of a launch can start before the previous launch has ended.
 bool launches_overlap();
-/// Number of lanes that should share each of n indices, measured on an H200 with the solver's passes over
-/// neighbours.
+/// Number of lanes that should share each of n indices: the fastest number for the solver's passes over
+/// neighbours, as measured on an H200.
 int team_wish(int n);
 
 /// Launches `kernel` after the previous launch. If the device supports it, the kernel's blocks start while

@@ -1,6 +1,6 @@
 #pragma once
-/// Small vectors for kernels. They are in the back end's namespace, because two compilers must not share one
-/// weak symbol.
+/// Small vectors for kernels. They are in the back end's namespace: g++ and nvcc compile these functions
+/// differently, and of two inline functions with the same name the linker would keep only one.
 
 #include <cmath>
 

@@ -30,7 +30,8 @@ struct SumSurface {
 };
 
 /// Computes the outward normal n_i = -h_i sum_j V_j grad W_ij, as if water continued behind walls and in
-/// obstacles, and samples the closing speed of the water. Both are 0 for water that cannot emit foam.
+/// obstacles, and samples the closing speed of the water. Both are 0 for water that is too slow or too
+/// coarse.
 template <class Bounds>
 struct Surface {
   const Vec4* position;
@@ -48,7 +49,7 @@ struct Surface {
   SIM_FN void operator()(int i) const {
     normal[i] = {0, 0, 0, 0};
     approach[i] = 0;
-    // This water is too coarse to emit and to lie next to emitting water.
+    // The particle is so coarse that it emits no foam and has no neighbour that emits foam.
     if (level[i] > coarsest_seen) return;
     if (!(energy(specific_energy(xyz(velocity[i]))) > 0)) return;
     const Vec4 self = position[i];

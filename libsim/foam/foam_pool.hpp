@@ -29,9 +29,9 @@ struct FoamKinds {
 
 /// Cells on which the closing speed of the water is measured, and this frame's results. The closing speed is
 /// the speed at which parts of the water approach each other. The edge of the cells is the effect's length_m,
-/// or follows from the volume of the water; it is at least 1.5 spacings of the coarsest particles.
-/// Differences between neighbouring particles depend on their sizes, their time steps and unsolved particles;
-/// differences between cell means do not.
+/// or follows from the volume of the water; it is at least 1.5 spacings of the coarsest particles. The speed
+/// is measured between cells, because differences between neighbouring particles depend on their sizes, their
+/// time steps and unsolved particles, and differences between cell means do not.
 struct MeetingCells {
   static constexpr int most_cells = 1 << 20;
 
@@ -40,8 +40,8 @@ struct MeetingCells {
   Vec3 last{1, 1, 1};
   float full = 1;  ///< mass of water that fills a cell, m_*
   CellMomentum sums;
-  /// Per cell, x: closing speed of the water divided by its distance, 1/s; w: value_measured, or
-  /// value_unknown without water.
+  /// Per cell, x: closing speed of two points of the water divided by their distance, 1/s; w: value_measured,
+  /// or value_unknown without water.
   Array<Vec4> meeting;
 
   /// The edge `wish`, or a longer edge if the domain would need more than most_cells cells, m.
@@ -60,7 +60,7 @@ struct FoamPool {
 
   // Scratch data of one frame, in members, so that each frame reuses their memory.
   MeetingCells cells;
-  Array<float> approach;     ///< closing speed / distance per water particle, 1/s
+  Array<float> approach;     ///< x of `meeting` at each water particle, 1/s
   Array<int> births, sums;   ///< number that each water particle emits, and inclusive sums
   Array<int> free, free_of;  ///< 1 = the slot is free, and inclusive sums
   Scanner scanner;

@@ -9,9 +9,10 @@
 
 namespace sim {
 
-/// A rectangle on a wall that measures the push of this part of the wall on the water. The part beyond the
-/// wall's edges and the extent across the wall are ignored. It should be several particle spacings d wide: a
-/// particle counts with the share of its square d x d that lies in the gauge.
+/// A rectangle on a wall that measures the push of this part of the wall on the water. Of the box min_m ..
+/// max_m, the part beyond the wall's edges and the extent across the wall are ignored. The rectangle should
+/// be several particle spacings d wide: a particle counts with the share of its square d x d that lies in the
+/// gauge.
 struct Gauge {
   std::string name;
   Wall wall = Wall::Floor;
@@ -20,8 +21,8 @@ struct Gauge {
 /// Area of the gauge within its wall, m2; room_m: inner size of the tank (Scene::room_m).
 double area_m2(const Gauge& gauge, const Vec3d& room_m);
 
-/// A part of an obstacle's surface that measures its push on the water: the part inside a box in the
-/// obstacle's own axes, by default the whole surface. The gauge has no bound on a side on
+/// Measures the push of a part of an obstacle's surface on the water: the part inside a box in the obstacle's
+/// own axes, by default the whole surface. The gauge has no bound on a side on
 /// which the box reaches the obstacle's end.
 struct ObstacleGauge {
   std::string name;
@@ -61,8 +62,8 @@ struct MomentumAccount {
   Vec3d braked{};     ///< by the speed limit, and by stopping particles that are not finite or far outside
   Vec3d viscosity{};  ///< by the solver's own viscosity (XSPH): 0 except for rounding and for neighbours of
                       ///< unsolved particles
-  /// By the scene's effects, without the obstacles' part: walls, air, buoyancy, swirl, the residual of the
-  /// viscosity solver. Other effects give 0 except for rounding.
+  /// By the scene's effects, without what obstacles gave: by walls, air, buoyancy, swirl, and the residual of
+  /// the viscosity solver. All other effects give 0 except for rounding.
   Vec3d effects{};
   Vec3d inherited{};  ///< velocity changes that unsolved particles inherited (temporal acceleration)
   /// Change by the projections minus the pushes of walls and obstacles. Not 0, because the coarse pressure on

@@ -1,12 +1,12 @@
 #pragma once
-/// Starts of Table 1's runs: HiRes at a checkpoint, seen from several gaze points, perturbed by an ulp, and
-/// coarsened to each method's targets.
+/// The particles with which Table 1's runs start: those of HiRes at a checkpoint, perturbed by an ulp, and
+/// coarsened to each method's targets for one of several gaze points.
 
 #include <cstdint>
 #include <vector>
 
-#include "libsim/view/gbuffer.hpp"
 #include "libsim/simulation.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 namespace measure {
 
@@ -22,7 +22,7 @@ struct Checkpoint {
 std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int count);
 
 /// Moves each coordinate one ulp (at most 2^-23 of its magnitude) up or down; the direction depends only on
-/// id, axis and repeat. Repeat 0 is the state itself.
+/// id, axis and repeat. Repeat 0 returns the state unchanged.
 std::vector<sim::ParticleState> perturbed(const std::vector<sim::ParticleState>& state, int repeat);
 
 /// The target of each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error if a

@@ -12,7 +12,7 @@
 
 namespace measure {
 
-/// What identifies a checkpoint.
+/// The properties that identify a checkpoint.
 struct CheckpointOf {
   std::string scene;         ///< as in the paper's tables
   std::string scene_sha256;  ///< of the scene's file

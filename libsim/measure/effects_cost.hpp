@@ -17,9 +17,9 @@ struct EffectVariant {
 };
 /// The effect and, before it, the scene's effects that it needs.
 std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const sim::Effect& effect);
-/// The scene without effects, with each effect and those that it needs, with all effects (unless one needs
-/// all others), and with the coefficients of all effects at 0, in this order. base::Error if the scene lists
-/// none with a coefficient above 0.
+/// The scene without effects, with each effect and those that it needs, with all effects (unless an earlier
+/// entry has them all), and with the coefficients of all effects at 0, in this order. base::Error if the
+/// scene lists none with a coefficient above 0.
 std::vector<EffectVariant> variants_of(const sim::Scene& scene);
 
 /// Measurements of one variant. Means are over frames.

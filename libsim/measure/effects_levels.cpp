@@ -115,7 +115,8 @@ Running start(const LevelVariant& variant, const std::vector<sim::ParticleState>
   return out;
 }
 
-/// Runs one frame. counts: its numbers enter the means and medians; keep: stores its picture.
+/// Runs one frame. `counts`: true if the frame's numbers enter the means and medians; `keep`: true if its
+/// picture is stored.
 void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool counts, bool keep) {
   sim::Simulation& fluid = *running.fluid;
   const double dt_s = runs.choice.frame_dt_s > 0 ? runs.choice.frame_dt_s : scene.frame_dt_s;

@@ -44,7 +44,8 @@ struct MethodScores {
   const Series& of(Metric metric) const { return series[static_cast<std::size_t>(metric)]; }
 };
 
-/// The five methods in one cell of the paper's table, each against HiRes; HiRes itself from perturbed starts.
+/// Scores of the five methods for one scene, n_* and preset, each compared with HiRes. HiRes itself is
+/// compared from perturbed starts.
 struct ScoreBlock {
   std::string scene, n_star;
   sim::Preset preset{};

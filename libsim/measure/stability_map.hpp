@@ -24,7 +24,7 @@ enum class Reach {
 template <class T>
 struct Limit {
   Reach reach = Reach::Found;
-  T passed{};          ///< the farthest value that passed; the usual one if that fails
+  T passed{};          ///< the farthest value that passed; the usual value if none did
   std::string failed;  ///< what failed at the nearest failing value; empty if all pass
   int runs = 0;
 };

@@ -19,7 +19,7 @@ std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::Simu
 std::string processor();
 
 /// Density error and numbers of neighbours, averaged over states spread over the run, and the largest density
-/// of these states. A single calm or wild moment then does not decide.
+/// of these states. With several states, a single calm or violent moment does not decide the result.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;

@@ -92,7 +92,8 @@ struct Readings {
   /// than the particles.
   bool merge_same_target = false;
   /// Maximum distance of each of two merging particles from the merged particle's centre, in radii of the
-  /// merged particle. Particles that long found no partner may exceed it (LevelRules::looks_farther, relays).
+  /// merged particle. Particles that have long found no partner may be farther away
+  /// (LevelRules::looks_farther, relays).
   double merge_reach = 1;
   /// Minimum distance of a merged particle from others of its level or coarser, as a share of the sum of
   /// radii.

@@ -19,7 +19,7 @@ class FluidPicture {
   explicit FluidPicture(const Scene& scene, const RenderOptions& options = {}) : renderer_(scene, options) {}
 
   /// Forgets the last picture before a new run. `seen`, if not null, is the picture that the viewer saw last.
-  /// It must live until the first draw; if the method uses no pictures, until the next begin().
+  /// `seen` must live until the first draw; if the method uses no pictures, until the next begin().
   void begin(const GBuffer* seen);
   /// Gets the particles, on the device if the back end shares memory with GL, and draws them.
   void draw(Simulation& fluid, std::span<const View> views, unsigned framebuffer) {

@@ -61,9 +61,9 @@ struct RenderOptions {
   float filter_delta_r = 4;
   /// Samples behind the narrow range count as if they were this far behind the filtered pixel's surface.
   float filter_mu_r = 1;
-  /// Number of rounds of the depth filter, each along x and then y (Truong and Yuksel iterate too). A further
-  /// round then smooths between strided samples. One round leaves streaks, because its last pass spreads the
-  /// values at a crest along the column.
+  /// Number of rounds of the depth filter, each along x and then y (Truong and Yuksel iterate too). After
+  /// them, one more round without strides smooths between the strided samples. A value of 1 leaves streaks,
+  /// because the pass along y spreads the values at a crest along the column.
   int filter_rounds = 2;
   /// The filter reaches 3 sigma, but at most this many px; pixels with a truncated filter are counted.
   int filter_max_px = 256;

@@ -38,7 +38,7 @@ struct FluidRenderer::State {
   std::array<float, 4> tank;
   bool lid;
   PassTimer timer;
-  bool foam;  // the scene lists foam: one more pass, and a composite that shows its result
+  bool foam;  // the scene lists foam: draws one more pass, and compiles foam into the composite
   GlProgram clear_targets = compute_program("clear.comp");
   GlProgram splat = compute_program("splat.comp");
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");

@@ -164,7 +164,7 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
   std::vector<Effect> out = kept;
   for (const auto& table : tables) {
     const auto named = effect_named(table.choice("kind", known));
-    if (!named) continue;  // read_picture_effects() reads it
+    if (!named) continue;  // a picture effect, which read_picture_effects() reads
     const EffectKind kind = *named;
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");

@@ -169,8 +169,8 @@ std::optional<EffectKind> effect_named(const std::string& word);
 std::string format_effects(const std::vector<Effect>& effects);
 /// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
 std::string effects_in_words(const std::vector<Effect>& effects);
-/// The checks of read_effects() for a scene that was not read from a file, except that whole options are
-/// whole; base::Error names the effect.
+/// The checks of read_effects() for a scene that was not read from a file, except the check for whole
+/// numbers; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 
 /// The longest substep for which every effect is stable, and the effect that limits it.

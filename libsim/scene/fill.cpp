@@ -32,7 +32,7 @@ Scene acting_scene(Scene scene, int finest_level) {
   return scene;
 }
 
-// No particle of a run is finer than those at the start.
+// The start level is the finest level of a run: no particle becomes finer than those at the start.
 Scene acting_scene(Scene scene, MethodKind method) {
   return acting_scene(std::move(scene), traits_of(method).start_level);
 }

@@ -116,7 +116,7 @@ std::array<bool, 3> round_about(const Triangles& mesh) {
   return out;
 }
 
-/// Fills the grid row by row; each free thread takes the next row.
+/// Computes the distances at all nodes. Threads take the rows of the grid one by one.
 void bake(const SurfaceTree& tree, DistanceGrid& out) {
   // Separate names: clang 14 does not allow lambdas to capture structured bindings.
   const int nx = out.nodes[0], ny = out.nodes[1], rows = ny * out.nodes[2];

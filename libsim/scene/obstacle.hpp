@@ -84,7 +84,8 @@ double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::ar
 /// True if the point is inside. For a point far from a mesh, cheaper than the distance.
 bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half sides of the shape's inner box, along its own axes: the shape is every point within radius_m of that
-/// box. A capsule's inner box is its axis, a sphere's its centre. A mesh merely lies in its inner box.
+/// box. A capsule's inner box is its axis, a sphere's its centre. The inner box of a mesh
+/// contains the mesh.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 /// Extent of the shape from its centre along each axis of the world; of a mesh, of the box that holds it.
 std::array<double, 3> reach_m(const Obstacle& obstacle, const Pose& pose);

@@ -16,10 +16,10 @@ namespace sim {
 namespace {
 
 constexpr int newest_format = 2;
-// A double resolves 1e-10 m at this distance.
+// Largest coordinate of tank.origin_m, m: a double resolves 1e-10 m at this distance.
 constexpr double farthest_origin_m = 1e6;
 constexpr double hottest_k = 1e4;
-constexpr double strongest_m_s2 = 1000;  ///< gravity
+constexpr double strongest_m_s2 = 1000;  ///< largest gravity
 constexpr double most_settle_frames = 10'000;
 
 Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
@@ -149,8 +149,8 @@ WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
   return out;
 }
 
-/// base::Error if the last block overlaps an earlier one. The mend moves a block along the axis of the
-/// smallest overlap. Blocks that touch do not overlap.
+/// base::Error if the last block overlaps an earlier one. The error advises to move a block along the axis of
+/// the smallest overlap. Blocks that touch do not overlap.
 void check_block_apart(const base::TomlTable& table, const std::vector<WaterBlock>& water) {
   const WaterBlock& last = water.back();
   for (std::size_t b = 0; b + 1 < water.size(); ++b) {

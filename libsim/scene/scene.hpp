@@ -44,7 +44,8 @@ struct Camera {
 };
 
 /// At `frame` the gaze starts to move from the last key's point to `point_m`. It reaches `point_m` after
-/// gaze_jump_frames frames and stays there until the next key. The first key has no motion.
+/// gaze_jump_frames frames and stays there until the next key. Up to the first key's frame
+/// the gaze rests on that key's point.
 struct GazeKey {
   int frame = 0;
   Vec3d point_m{};
@@ -52,7 +53,7 @@ struct GazeKey {
 
 /// A box that must stay in the participant's picture; each side at least 1 mm.
 struct VisibleBox {
-  std::string name;  ///< 1 to 64 characters, such as "the falling jet"
+  std::string name;  ///< 1 to 64 bytes, such as "the falling jet"
   Vec3d min_m{}, max_m{};
 };
 
@@ -88,7 +89,7 @@ struct Scene {
   /// position = origin_m + position.
   Vec3d origin_m{};
   /// Inner size of the tank; glass walls and floor. Without a lid it is open at the top: y is then the drawn
-  /// height of the walls and the limit for nozzles and outlets, but the walls hold water at any height.
+  /// height of the walls and the limit for nozzles and outlets, but the walls confine water at any height.
   Vec3d tank_size_m{};
   bool lid = false;
   std::vector<WaterBlock> water{WaterBlock{}};  ///< 1 to most_water_blocks that do not overlap

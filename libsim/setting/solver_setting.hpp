@@ -1,6 +1,6 @@
 #pragma once
-/// A scene, a method and the knobs that trade time for accuracy: one cell of an accuracy sweep, or the
-/// setting that a program got from a sweep's choice.
+/// A scene, a method and the parameters (knobs) that trade time for accuracy: one cell of an accuracy sweep,
+/// or the setting that a program runs.
 
 #include <array>
 #include <cstdint>
