@@ -14,7 +14,7 @@ layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
-const float thin_m = 0.03;                          // m; thinner water reflects less
+const float thin_m = 0.03;                          // thickness below which water reflects less, m
 
 float water_length(vec2 xy) {
   const vec2 g = xy / thickness_rule.z - 0.5;

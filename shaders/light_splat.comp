@@ -7,7 +7,7 @@
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) buffer Top { uint top[]; };              // height in 24 bits, radius in 8; 0: no water
-layout(std430, binding = 2) buffer Thickness { uint thickness[]; };  // fixed point
+layout(std430, binding = 2) buffer Thickness { uint thickness[]; };  // length of the ray in water, fixed point
 #ifdef IMAGES
 layout(std430, binding = 3) readonly buffer OwnTop { uint own_top[]; };  // the surface without mirror images
 layout(std430, binding = 4) readonly buffer OwnThickness { uint own_thickness[]; };

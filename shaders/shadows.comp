@@ -12,7 +12,7 @@ layout(std430, binding = 1) writeonly buffer Shadow { vec2 shadow[]; };  // unbl
 
 const float turned_aside_per_m = 4.0;  // attenuation of light by scattering in flying water, 1/m
 const float sun_radius = 0.00465;      // angular radius, rad
-const int rays = 8;                    // per cell, between different points of cell and sun
+const int rays = 8;                    // per cell; each from another point of the cell to another point of the sun
 
 vec4 surface_near(vec2 place) {
   const vec2 g = (place - maps.surface_grid.xy) / maps.surface_grid.z - 0.5;

@@ -60,9 +60,9 @@ struct FoamPool {
 
   // Scratch data of one frame, in members, so that each frame reuses their memory.
   MeetingCells cells;
-  Array<float> approach;     ///< x of `meeting` at each water particle, 1/s
-  Array<int> births, sums;   ///< number that each water particle emits, and inclusive sums
-  Array<int> free, free_of;  ///< 1 = the slot is free, and inclusive sums
+  Array<float> approach;     ///< MeetingCells::meeting.x at each water particle, 1/s
+  Array<int> births, sums;   ///< number that each water particle emits, and its inclusive sums
+  Array<int> free, free_of;  ///< per slot: 1 if it is free, else 0, and the inclusive sums of this
   Scanner scanner;
 
   /// Allocates `most` empty slots for diffuse particles, and buffers for `water` particles of water.

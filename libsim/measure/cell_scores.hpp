@@ -19,7 +19,7 @@ inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, 
 /// The key of one picture of Table 1.
 struct CellKey {
   std::string scene, n_star, preset, method;
-  int checkpoint = 0;  ///< frame
+  int checkpoint = 0;  ///< frame of the checkpoint
   std::string start;   ///< checkpoint_digest(): pictures from different starts are not compared
   int gaze = 0;        ///< from 1, in the order of gaze_points
   int repeat = 0;      ///< from 1

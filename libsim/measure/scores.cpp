@@ -22,7 +22,7 @@ std::vector<double> values_of(const Series& series) {
 }
 
 struct Summary {
-  stats::MeanInterval interval;  ///< over groups
+  stats::MeanInterval interval;  ///< over the means of the groups of repeats
   std::size_t finite = 0, equal = 0, skipped = 0;
   double pixels = 0;  ///< mean mask size of the cells that were not skipped, px
 };

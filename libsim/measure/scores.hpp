@@ -50,7 +50,7 @@ struct ScoreBlock {
   std::string scene, n_star;
   sim::Preset preset{};
   std::vector<MethodScores> methods;
-  std::vector<int> checkpoints = {};     ///< frames
+  std::vector<int> checkpoints = {};     ///< frames of the compared checkpoints
   std::vector<std::string> starts = {};  ///< checkpoint_digest() of each checkpoint, once known
   int gazes = 0;                         ///< gaze points per checkpoint
 };

@@ -59,9 +59,9 @@ struct MapCell {
 double margin_of(const MapCell& cell);
 
 struct StabilityMap {
-  std::vector<std::string> cases;    ///< ids, top to bottom
-  std::vector<std::string> methods;  ///< left to right
-  std::vector<MapCell> cells;        ///< a case and method without cells: not applicable
+  std::vector<std::string> cases;    ///< ids, in the order of the rows
+  std::vector<std::string> methods;  ///< names, in the order of the columns
+  std::vector<MapCell> cells;        ///< none for a case that does not apply to a method
   double most = 0;                   ///< largest factor tried
   double resolution = 0;             ///< largest factor between what passed and what failed
   std::string circumstances;         ///< machine, back end, size, seed

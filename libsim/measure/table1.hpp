@@ -23,15 +23,15 @@ struct Table1Options : TableOptions {
   int gazes = 3;             ///< gaze points per checkpoint
   int repeats = 5;           ///< perturbed starts per gaze point
   int frames_after = 5;      ///< frames from a checkpoint to the compared picture
-  int cumul_frames = 200;    ///< length of the film; 0 = no film
-  int film_starts = 1;       ///< number of starts of the film, which differ by an ulp
-  int projections = 50;      ///< most constraint projections that relax a start
+  int cumul_frames = 200;    ///< frames of the comparison frame by frame (film.cpp); 0 = none
+  int film_starts = 1;       ///< number of runs of that comparison; their starts differ by an ulp
+  int projections = 50;      ///< maximum number of constraint projections that relax a start
   bool unperturbed = false;  ///< starts are not perturbed: HiRes must then equal itself
   base::PictureSize size{1280, 720};
   std::string pictures;                          ///< folder for side-by-side pictures; empty = none
-  std::string checkpoints_to, checkpoints_from;  ///< folders for checkpoint_file.hpp; empty = none
-  std::string cells;                             ///< file for cell_scores.hpp; empty = none
-  std::string paired_with;                       ///< file for cell_scores.hpp from another run; empty = none
+  std::string checkpoints_to, checkpoints_from;  ///< folders to write and read checkpoints; empty = none
+  std::string cells;                             ///< file to write the scores of each picture; empty = none
+  std::string paired_with;                       ///< file `cells` of another run to compare; empty = none
 };
 
 /// Options that all runs of a method share.
@@ -69,7 +69,7 @@ std::vector<Checkpoint> take_checkpoints(const sim::CellScene& scene, const Cell
 struct StartQuality {
   sim::MethodKind method{};
   sim::Preset preset{};
-  sim::RelaxedStart worst;     ///< largest number of projections, largest compression
+  sim::RelaxedStart worst;     ///< largest number of projections and largest compression of all starts
   double particles_share = 0;  ///< mean of number of particles / (8 n_*)
   int starts = 0;
 };

@@ -18,7 +18,7 @@ enum class TargetSource {
   None,     ///< no targets: particles keep their levels
   Gaze,     ///< finest in the fovea, coarsest in the periphery, other levels between (like FovFluid, [42] in
             ///< ViP-Fluid)
-  Saliency  ///< Eq. 1-9
+  Saliency  ///< visual saliency, Eq. 1-9
 };
 
 /// A method as a selection of stages; no method has code of its own.

@@ -37,13 +37,13 @@ struct Readings {
   double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature
   AcuityFalloff falloff = AcuityFalloff::Hyperbolic;
   double fovea_half_angle_deg = 7.5;
-  double image_plane_m = 1;  ///< z_Pi, Eq. 4
+  double image_plane_m = 1;  ///< Eq. 4: distance z_Pi of the image plane from the eye
   ThicknessWeight thickness = ThicknessWeight::Min;
-  double attenuation_per_m = 0.5;                    ///< the 1/2 of Eq. 7
-  bool calm_out_of_view = true;                      ///< Eq. 6: f_T = 0 outside the picture
+  double attenuation_per_m = 0.5;                    ///< Eq. 7: the factor 1/2 in e^(d/2)
+  bool calm_out_of_view = true;                      ///< Eq. 6: f_T = 0 for particles outside the picture
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
   bool hide_manifold_behind = false;                 ///< f_m of Eq. 5 is divided by gamma_t of Eq. 7
-  GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6
+  GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6: reach of the gradients
   /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. In still water,
   /// 0.3 causes two thirds of the splits that 1 causes; 0.1 causes less than half of the splits that 1
   /// causes.

@@ -31,7 +31,7 @@ FrameRate parse_frame_rate(std::string_view text);
 class ToleranceSwitch {
  public:
   static constexpr std::size_t window_frames = 30;
-  static constexpr double off_above = 1;  ///< frames/s
+  static constexpr double off_above = 1;  ///< tau above which acceleration switches off, frames/s
 
   /// At most one of fixed_tau and fixed_rate may be given; base::Error otherwise, or if tau is not finite.
   explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {},

@@ -21,14 +21,14 @@ struct ViewTargets {
   int cells_x = 0, cells_y = 0;
   GlBuffer block;               ///< the shaders' ViewBlock
   GlBuffer depth, front;        ///< splatted depth (float bits), index of the front particle
-  GlBuffer radii;               ///< of the front particle; 0: none
+  GlBuffer radii;               ///< per pixel, radius of the front particle; 0: no particle
   GlBuffer filter_a, filter_b;  ///< nearness, 1 / depth; the filtered result is in filter_a
   GlBuffer normals;
   GlBuffer touched;                   ///< one word per particle, see occlusion.glsl
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
   GlBuffer wide_list;                 ///< particles with large footprints, see wide_list.glsl
   GlBuffer wet;                       ///< flags of tiles that contain water, see wet_tiles.glsl
-  GlBuffer thickness;                 ///< fixed point
+  GlBuffer thickness;                 ///< sum of the chords of all spheres per cell, fixed point
   GlBuffer thickness_a, thickness_b;  ///< the smoothed result is in thickness_a, in fixed-point units
   GlBuffer foam;                      ///< two words per pixel, see foam.glsl; all 0 between pictures
 

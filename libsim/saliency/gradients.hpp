@@ -11,10 +11,10 @@ namespace sim::SIM_BACKEND {
 struct GradientFields {
   const Vec4* position;
   const Vec4* velocity;
-  const float* density;  ///< rho / rho_0
-  float* out;            ///< f_T gamma_t
-  float density_epsilon;
-  float speed_epsilon;  ///< m/s
+  const float* density;   ///< rho / rho_0
+  float* out;             ///< output: f_T gamma_t
+  float density_epsilon;  ///< share of rho_0
+  float speed_epsilon;    ///< m/s
   bool dimensionless;
 };
 

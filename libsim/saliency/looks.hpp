@@ -54,12 +54,12 @@ struct Looks {
 /// Saliency of one particle (paper 3.2): at the last level update (Simulation::read_saliency) or in the
 /// present state (Simulation::measure_saliency).
 struct ParticleSaliency {
-  float acuity = 0;    ///< f_a, Eq. 3
-  float manifold = 0;  ///< f_m, Eq. 5
-  float temporal = 0;  ///< f_T, Eq. 6
-  float combined = 0;  ///< F, Eq. 1
-  float s = 0;         ///< normalised, [0, 1]
-  int target = 0;      ///< level, Eq. 9
+  float acuity = 0;    ///< f_a, visual acuity, Eq. 3
+  float manifold = 0;  ///< f_m, curvature of the visible surface, Eq. 5
+  float temporal = 0;  ///< f_T, gradients of velocity and density, Eq. 6
+  float combined = 0;  ///< F, weighted sum of the three features, Eq. 1
+  float s = 0;         ///< saliency, [0, 1]: F normalised, or a function of the gaze alone
+  int target = 0;      ///< target level, Eq. 9
 };
 
 }  // namespace sim

@@ -61,11 +61,11 @@ void gaze_to_levels(const Acuity& acuity, const Eyes& eyes, const Vec4* position
 /// State of saliency between frames. Allocates no memory until used.
 struct SaliencyState {
   Readings readings;
-  int levels = most_levels;  ///< N
+  int levels = most_levels;  ///< N, number of levels
   SaliencyInput input;
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
-  Eyes eyes;                        ///< of the coming evaluation
+  Eyes eyes;                        ///< for the coming evaluation
   int frames_since = 0;             ///< frames since the temporal feature was measured; 0: never
   Array<float> temporal, combined;  ///< f_T gamma_t of this frame only, and F
 
@@ -83,7 +83,7 @@ struct SaliencyState {
 /// Contribution of the water's rotation to saliency: a particle's share is 0 up to the rate `from`, 1/s, and
 /// reaches 1 at twice this rate. Not in the paper: its temporal feature has no such term.
 struct SwirlSeen {
-  const float* rate = nullptr;  ///< 1/s; nullptr: not used
+  const float* rate = nullptr;  ///< rate of rotation of each particle, 1/s; nullptr: no contribution
   float from = 0;
   float weight = 0;  ///< added to f_T gamma_t at a share of 1
 
@@ -96,7 +96,7 @@ struct SwirlSeen {
 struct SaliencyFluid {
   const Vec4* position = nullptr;
   const Vec4* velocity = nullptr;
-  const float* density = nullptr;  ///< rho / rho_0, if the temporal feature is due
+  const float* density = nullptr;  ///< rho / rho_0; read only if the temporal feature is measured
   const std::uint8_t* level = nullptr;
   ParticleNeighbours neighbours{};
   int n = 0;

@@ -39,7 +39,7 @@ struct EyeSpace {
 
 /// One eye in the form that kernels use.
 struct Eye {
-  Vec3 viewpoint{};  ///< p_v, m
+  Vec3 viewpoint{};  ///< position p_v of the eye, m
   Vec3 gaze{};       ///< direction of the gaze after visual(), of any length
   EyeSpace now{};    ///< camera of the coming frame
   EyeSpace then{};   ///< camera of the picture
@@ -55,8 +55,8 @@ struct Eye {
 
 struct Acuity {
   AcuityFalloff falloff;
-  float fovea;        ///< theta_f, rad
-  float image_plane;  ///< z_Pi, m
+  float fovea;        ///< half angle theta_f of the fovea, rad
+  float image_plane;  ///< distance z_Pi of the image plane, m
 
   SIM_FN static constexpr float radians(float degrees) { return degrees * 0.017453292519943f; }
 

@@ -121,7 +121,7 @@ std::optional<EffectOption> coarsest_level_of(EffectKind kind);
 /// One row of the registry.
 struct EffectTraits {
   const char* word;
-  const char* key;  ///< ends in the unit
+  const char* key;  ///< key of the coefficient; ends in the unit
   EffectUnit unit;
   double longest_step;
   EffectKind needs;

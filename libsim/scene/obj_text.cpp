@@ -147,7 +147,7 @@ class Reader {
   const ObjFailure& fail_;
   int line_ = 0;
   Triangles mesh_;
-  std::vector<int> lines_;  ///< of the faces
+  std::vector<int> lines_;  ///< line of each face in the text
 };
 
 }  // namespace

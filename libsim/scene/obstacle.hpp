@@ -59,7 +59,7 @@ struct Obstacle {
   double length_m = 0;             ///< of a capsule's axis, between the centres of its round ends; along y
   std::array<double, 3> size_m{};  ///< of a box, along its own axes
   std::shared_ptr<const Mesh> mesh;
-  Pose start;  ///< at rest and at frame 0
+  Pose start;  ///< pose while the water settles and at frame 0
   ObstacleMotion motion = ObstacleMotion::Fixed;
   std::array<double, 3> about_m{};      ///< a point of the rotation axis
   std::array<double, 3> axis{0, 1, 0};  ///< direction of the rotation axis, a unit vector

@@ -21,7 +21,7 @@ class SurfaceTree {
   using Vector = std::array<double, 3>;
   struct Node {
     Vector low, high;
-    int first = 0, count = 0;  ///< of triangles; count 0: an inner node with two children
+    int first = 0, count = 0;  ///< triangles of a leaf; count 0: an inner node with two children
     int second = 0;            ///< index of the second child; the first child is the next node
   };
   struct Triangle {

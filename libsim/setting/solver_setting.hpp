@@ -13,13 +13,13 @@
 namespace sim {
 
 enum class SolverKnob {
-  Size,          ///< n_*
+  Size,          ///< n_*, number of particles if all have the coarsest level
   Rate,          ///< frames per second of fluid time
   Iterations,    ///< projections per substep
   Substeps,      ///< per frame; 0 = as many as the fastest particle needs
   CoarseCycles,  ///< V-cycles of the coarse pressure
   Momentum,      ///< share of the last projection's displacement that the next one repeats
-  Levels,        ///< N
+  Levels,        ///< N, number of levels
   Alpha,         ///< weight of the temporal feature, Eq. 1
   Fovea,         ///< theta_f, degrees, Eq. 3
   Beta           ///< lowest probability that a particle is solved, Algorithm 3; 1 = no temporal acceleration
