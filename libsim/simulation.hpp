@@ -60,7 +60,7 @@ struct SimulationOptions : SolverNumbers {
   Readings readings = readings_of(Preset::Tuned);
   /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
-  std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
+  std::optional<TargetRegion> forced_targets;  ///< for tests of methods that split and merge
   /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_*
   std::int64_t particle_capacity = 0;
   /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 no particles merge, and only

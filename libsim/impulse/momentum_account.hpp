@@ -22,8 +22,8 @@ struct Gauge {
 double area_m2(const Gauge& gauge, const Vec3d& room_m);
 
 /// Measures the push of a part of an obstacle's surface on the water: the part inside a box in the obstacle's
-/// own axes, by default the whole surface. The gauge has no bound on a side on
-/// which the box reaches the obstacle's end.
+/// own axes, by default the whole surface. On a side on which the box reaches the obstacle's end, the
+/// gauge has no bound.
 struct ObstacleGauge {
   std::string name;
   std::size_t obstacle = 0;  ///< index of the obstacle in the scene's order

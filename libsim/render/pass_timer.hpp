@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Times the passes of a draw. Needs a current context. If off, calls cost nothing.
+/// Times the passes of a draw. Needs a current context. Calls cost nothing if `on` was false.
 class PassTimer {
  public:
   explicit PassTimer(bool on);

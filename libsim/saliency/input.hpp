@@ -26,10 +26,9 @@ class SaliencyInput {
   /// incomplete arrays or without a perspective camera, GL buffers that are smaller than the picture.
   bool look(const Looks& looks, bool pictures = true);
   /// Degrees by which the gaze of `looks` (without an argument: of the last look()) has turned since
-  /// mark_gazes(); the larger value of two eyes. A shift of the eye by s m adds atan(s), the
-  /// angle of the shift at a distance of 1 m. A gaze that was
-  /// valid at the mark and is lost now has turned by 0; one that was lost at the mark too is replaced by the
-  /// view's axis. Before the first mark the result is 180.
+  /// mark_gazes(); the larger value of two eyes. A shift of the eye by s m adds atan(s), the angle of the
+  /// shift at a distance of 1 m. A gaze that was valid at the mark and is lost now has turned by 0; one that
+  /// was lost at the mark too is replaced by the view's axis. Before the first mark the result is 180.
   double turned_deg(const Looks& looks) const;
   double turned_deg() const;
   /// Stores the present gazes for turned_deg(). A gaze that has been lost for at most hold_s keeps its

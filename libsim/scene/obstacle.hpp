@@ -63,7 +63,7 @@ struct Obstacle {
   ObstacleMotion motion = ObstacleMotion::Fixed;
   std::array<double, 3> about_m{};      ///< a point of the rotation axis
   std::array<double, 3> axis{0, 1, 0};  ///< direction of the rotation axis, a unit vector
-  double rate_rad_s = 0;                ///< right-handed about the axis
+  double rate_rad_s = 0;                ///< angular velocity, right-handed about the axis
   std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
   double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
   double density_kg_m3 = 0;             ///< of a free body, uniform
@@ -84,8 +84,7 @@ double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::ar
 /// True if the point is inside. For a point far from a mesh, cheaper than the distance.
 bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half sides of the shape's inner box, along its own axes: the shape is every point within radius_m of that
-/// box. A capsule's inner box is its axis, a sphere's its centre. The inner box of a mesh
-/// contains the mesh.
+/// box. A capsule's inner box is its axis, a sphere's its centre. The inner box of a mesh contains the mesh.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 /// Extent of the shape from its centre along each axis of the world; of a mesh, of the box that holds it.
 std::array<double, 3> reach_m(const Obstacle& obstacle, const Pose& pose);
