@@ -1,5 +1,6 @@
 #pragma once
-/// The records of a session about a headset: properties, slots (periods of its compositor) and head poses.
+/// What a session records about a headset: its properties, its slots (display periods of the headset's
+/// compositor) and the poses of the head.
 
 #include <array>
 #include <cstdint>
@@ -21,11 +22,13 @@ struct HeadsetFacts {
   std::string runtime, runtime_version, headset;
   std::array<EyeFacts, 2> eyes;  ///< left and right
   std::string format;            ///< pixel format of the submitted pictures
+  /// Refresh rate that the runtime reports, and the measured rate, Hz; none: not known.
   std::optional<double> refresh_told_hz, refresh_measured_hz;
-  /// hold mode of a picture between two frames: "image", "state" or "head_locked"
+  /// How a picture that is shown for several periods follows the head: "image" (the runtime reprojects the
+  /// picture), "state" (the frozen fluid is redrawn) or "head_locked" (the picture moves with the head).
   std::string hold = "image";
-  std::string blend;  ///< environment blend mode: "opaque"
-  bool times_convert = false;
+  std::string blend;               ///< environment blend mode: "opaque"
+  bool times_convert = false;      ///< the runtime's times convert to the session's clock
   bool position_tracking = false;  ///< the runtime reports that it tracks the head's position
   bool eye_tracking = false;       ///< an eye tracker was requested and is available
   bool operator==(const HeadsetFacts&) const = default;
@@ -44,7 +47,7 @@ struct HeadPose {
 /// The distance between the eyes is recorded again once it has changed by more than this, mm.
 inline constexpr double ipd_change_mm = 0.2;
 
-/// A period of the headset's compositor.
+/// A slot: one display period of the headset's compositor.
 struct SlotRecord {
   std::int64_t predicted_ns = 0;  ///< predicted display time, on the session's clock
   std::int64_t period_ns = 0;     ///< period as the runtime reports it

@@ -20,13 +20,16 @@ struct FrameGuards {
 
 /// Parameters of temporal acceleration in one frame, for a fluid that skips particles.
 struct FrameTolerance {
-  std::optional<double> tau_fps;            ///< tau (Eq. 11), frames/s; none: no frame time was known yet
-  double beta = 1;                          ///< lowest probability that a particle is solved, [0, 1]
-  double active_fraction = 1;               ///< share of particles that were solved, [0, 1]
-  std::optional<double> mu_fps, delta_fps;  ///< mean and sd for tau; empty: tau is fixed or not known
+  /// Tolerance tau = mu - a exp(b delta) (Eq. 11 of the paper), frames/s; none: no frame time was known yet.
+  std::optional<double> tau_fps;
+  double beta = 1;             ///< lowest probability that a particle is solved, [0, 1]
+  double active_fraction = 1;  ///< share of particles that were solved, [0, 1]
+  /// mu and delta: mean and standard deviation of the frame rate, frames/s; none: tau is fixed or not known.
+  std::optional<double> mu_fps, delta_fps;
 };
 
-/// Facts about a frame from the stimulus that made it, stored in every frame record. Empty: not measured.
+/// Facts about a frame from the stimulus that made it, stored in every frame record. An empty member was
+/// not measured.
 struct FrameFacts {
   double simulation_time_s = 0;
   std::vector<std::int64_t> particles_by_level;  ///< finest first
@@ -38,7 +41,8 @@ struct FrameFacts {
 class Stimulus {
  public:
   virtual ~Stimulus() = default;
-  /// Names scene, method, n_*, back end and bake hash, for the record.
+  /// Text for the session's record: scene, method, n_* (number of particles if all were at the coarsest
+  /// level), back end and bake hash.
   virtual std::string description() const = 0;
   /// Number of content steps after which the process ends or repeats; 0: unlimited.
   virtual std::int64_t length() const = 0;

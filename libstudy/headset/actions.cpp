@@ -46,7 +46,7 @@ XrAction make_action(const SessionHandle& session, XrActionSet set, XrActionType
 }
 
 /// Suggests the bindings of one kind of controller to the runtime. Returns false if the runtime does not
-/// support it.
+/// support this kind.
 bool suggest_profile(const SessionHandle& session, const std::string& profile,
                      const std::vector<Binding>& bindings) {
   std::vector<XrActionSuggestedBinding> suggested;

@@ -22,14 +22,14 @@
 namespace study {
 
 /// The thread that runs the slots (frames of the runtime). Caller: the thread that calls FrameLoop::turn(),
-/// for runtimes whose time stops between slots. Thread: a thread that does nothing else, so that no slot is
-/// missed while the program computes, writes or waits.
+/// for runtimes whose time stops between slots. Thread: a separate thread that does nothing else, so that no
+/// slot is missed while the program computes, writes or waits.
 enum class SlotDrive { Caller, Thread };
 
 /// The eye views that a picture was drawn from.
 struct HeldViews {
   EyeViews views;
-  bool in_head = false;  ///< see HeadsetLayers
+  bool in_head = false;  ///< true: poses in the head's frame; false: in the world
 };
 
 /// The record of one slot.
@@ -45,8 +45,10 @@ struct HeadsetRecord {
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
-  bool trusted = false;  ///< times convert, ascend and are multiples of the period
-  int world = 0;         ///< as HeadsetRecord::world
+  /// True: the predicted times of the slots convert to the session's clock, ascend, and are multiples of the
+  /// period apart.
+  bool trusted = false;
+  int world = 0;  ///< as HeadsetRecord::world
   HeadsetSlot last;
   EyeViews views;  ///< predicted poses of the eyes in the last slot
 };
@@ -158,7 +160,7 @@ class FrameLoop {
   HeadsetSlot came_on_;             ///< first slot of the shown picture
   std::optional<CutCause> unseen_;  ///< why a shown picture could not be seen
   bool running_ = false, stopping_ = false;
-  bool doubted_ = false;       ///< predicted times repeated or were no multiples of the period
+  bool doubted_ = false;       ///< predicted times repeated, or were not multiples of the period apart
   bool runtime_ends_ = false;  ///< the runtime shuts down: no new session is possible
   SessionFacts reported_;
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move

@@ -90,8 +90,8 @@ void HeadsetDisplay::settle_new_session() {
   note_cut(spoilt_, CutCause::Rate);
 }
 
-/// Throws if the runtime's time advances without calls: such a runtime would drop slots while the program
-/// computes.
+/// base::Error if the runtime's time advances while the program makes no calls: such a runtime would drop
+/// slots while the program computes.
 void HeadsetDisplay::check_time_stands_still() {
   turn();
   const std::int64_t before_ns = facts().last.predicted_ns;
@@ -196,8 +196,8 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
 /// none if the poses are unknown.
 std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
-  const sim::Offscreen& canvas =
-      loop_.canvas();  // before views_at(): a later move of the origin drops the picture
+  // canvas() comes before views_at(), because a move of the world's origin after canvas() drops the picture.
+  const sim::Offscreen& canvas = loop_.canvas();
   EyeViews views = loop_.views_at(at_ns);
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);

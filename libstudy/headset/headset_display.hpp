@@ -58,11 +58,14 @@ class HeadsetDisplay final : public Display {
   void show_page(const HeadsetPage& page) { loop_.show_page(page); }
   void hide_page() { loop_.hide_page(); }
 
-  /// Records of finished slots since the last call. Beyond FrameLoop::most_records, older ones are dropped.
+  /// Records of finished slots since the last call. Beyond FrameLoop::most_records records, the older half of
+  /// them is dropped.
   std::vector<HeadsetRecord> take_records();
-  /// Waits for the next slot, then as take_records(); empty if no slot came within 0.1 s.
+  /// Waits for the next slot, then returns the records as take_records() does; empty if no slot came within
+  /// 0.1 s.
   std::vector<HeadsetRecord> next_records();
-  /// As take_records(), for the code that records the session. Both functions return every record once.
+  /// As take_records(), but for the code that records the session. Each of the two functions returns every
+  /// record once.
   std::vector<HeadsetRecord> take_for_record();
   SessionFacts session() const { return loop_.session(); }
   const HeadsetRules& rules() const { return rules_; }
@@ -94,7 +97,7 @@ class HeadsetDisplay final : public Display {
 
   HeadsetRules rules_;
   FrameLoop loop_;
-  Stimulus* pending_ = nullptr;
+  Stimulus* pending_ = nullptr;  ///< stimulus of the last render(), which present() draws
   double refresh_hz_ = 0;
   std::int64_t draw_ns_ = 0;  ///< recent drawing time; 0: nothing drawn, or SlotDrive::Caller
   std::vector<HeadsetRecord> for_pages_, for_record_;

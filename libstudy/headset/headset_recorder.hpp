@@ -14,9 +14,10 @@
 
 namespace study {
 
-/// Converts the display's records to gaze samples and slots; the display must outlive it. The gaze is that of
-/// the eye tracker, or the head's direction as a substitute. Tracker data are used only between start() and
-/// stop(), the time for which the participant consents. Otherwise ray() gives the head's direction.
+/// Converts the display's records to gaze samples and slots; the display must outlive the recorder. The gaze
+/// is that of the eye tracker, or the head's direction as a substitute. Tracker data are used only between
+/// start() and stop(), the time for which the participant consents. Otherwise ray() gives the head's
+/// direction.
 ///
 /// Makes one sample for each sample time that the runtime reports, or one per slot if it reports no times. A
 /// sample of lost eyes without a new reported time has no device time. Its time is the slot's time minus the

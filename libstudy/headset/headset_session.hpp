@@ -52,16 +52,16 @@ struct HeadsetEvent {
 struct HeadsetGaze {
   /// Time of the sample on the session's clock; none if the runtime does not report it.
   std::optional<std::int64_t> sampled_ns;
-  HeadsetPose ray;  ///< orientation valid but not tracked: an estimate
+  HeadsetPose ray;  ///< an orientation that is valid but not tracked is an estimate of the runtime
 };
 
 /// Buttons and pointing of both hands. A button held on both hands counts once.
 struct HeadsetHands {
-  bool select = false;           ///< is pressed
+  bool select = false;           ///< the select button is pressed
   bool select_began = false;     ///< pressed since the last input(), and still pressed
-  bool menu = false;             ///< is pressed
-  std::array<float, 2> stick{};  ///< deflection right and up, [-1, 1]; 0 without a stick
-  /// pose of the left and the right hand, which points along direction_of(); none: not active
+  bool menu = false;             ///< the menu button is pressed
+  std::array<float, 2> stick{};  ///< deflection of the thumbstick right and up, [-1, 1]; 0 without a stick
+  /// Pose of the left and the right hand, which point along direction_of(pose); none: not active.
   std::array<std::optional<HeadsetPose>, 2> aim;
 };
 
@@ -175,8 +175,8 @@ class HeadsetSession {
 
   HeadsetRate rate() const;
   const RateMeter& meter() const;
-  /// Requests one of the refresh rates that the runtime lists; base::Error for another rate. rate() and an
-  /// event show a change.
+  /// Requests one of the refresh rates that the runtime lists; base::Error for another rate. If the display
+  /// changes its rate, rate() and an event report the new rate.
   void request_rate(double hz);
 
  private:

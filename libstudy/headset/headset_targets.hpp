@@ -8,7 +8,8 @@
 
 namespace study {
 
-/// Shows targets in a headset. Needs a display with a page and an eye tracker; the display must outlive it.
+/// Shows targets in a headset. Needs a display with a page and an eye tracker; the display must outlive this
+/// object.
 class HeadsetTargets final : public GazeTargets {
  public:
   explicit HeadsetTargets(HeadsetDisplay& display) : display_(display) {}
@@ -20,7 +21,7 @@ class HeadsetTargets final : public GazeTargets {
 
  private:
   void draw();
-  /// None if the target was not visible all the time.
+  /// Shows the target once and returns the samples; none if the target was not visible all the time.
   std::optional<std::vector<TargetSample>> look_once(const HeadsetPage& page, double settle_s,
                                                      double sample_s, const std::function<void()>& check);
 

@@ -10,7 +10,7 @@
 
 namespace study {
 
-/// Those of the offered formats that can store a picture, best first: 8-bit sRGB, then linear formats fine
+/// The offered formats that can store a picture, best first: 8-bit sRGB, then linear formats fine
 /// enough for all 256 levels, then coarser ones. Excludes depth formats and unknown formats.
 std::vector<std::int64_t> picture_formats(const std::vector<std::int64_t>& offered);
 /// True if images of this format show each of the 256 sRGB levels with an error of at most one level.

@@ -45,8 +45,8 @@ class RateMeter {
   std::optional<std::int64_t> last_ns_;
   double period_ns_ = 0;                               ///< 0: not settled
   double before_ns_ = 0;                               ///< the last settled period; 0: none
-  int steps_ = 0;                                      ///< number of steps since frames run
-  std::int64_t counted_ns_ = 0, counted_periods_ = 0;  ///< sums since the rate settled
+  int steps_ = 0;                                      ///< number of steps since frames began
+  std::int64_t counted_ns_ = 0, counted_periods_ = 0;  ///< sums over the steps since the rate settled
   std::int64_t dropped_ = 0, repeated_ = 0, off_grid_ = 0;
   std::vector<Step> latest_;
 };

@@ -36,11 +36,11 @@ class KeptContext {
   EGLSurface draw_, read_;
 };
 
-/// An OpenXR session. The destructor destroys it; objects made from the session must be destroyed before.
+/// An OpenXR session. The destructor destroys the session; destroy objects made from the session before.
 class SessionHandle {
  public:
-  /// base::Error if the runtime needs a newer OpenGL, does not accept contexts of this kind, or not this
-  /// context. `gl` must be current on the calling thread and outlive the session.
+  /// base::Error if the runtime needs a newer OpenGL, or refuses this context or contexts of its kind. `gl`
+  /// must be current on the calling thread and outlive the session.
   SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
   ~SessionHandle();
   SessionHandle(const SessionHandle&) = delete;

@@ -45,8 +45,8 @@ class Swapchain {
   std::uint64_t last_number_ = 0;
 };
 
-/// Makes one swapchain per size, all of the best offered format with which this succeeds. base::Error if it
-/// succeeds with no format.
+/// Makes one swapchain for each size, all in the best offered format with which the runtime makes all of
+/// them. base::Error if this fails with every format.
 std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& session,
                                                         const std::vector<base::PictureSize>& sizes);
 

@@ -13,7 +13,7 @@ struct HeadsetPose {
   std::array<float, 3> place_m{};
   std::array<float, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
   bool place_valid = false, turn_valid = false;
-  /// False for a valid position or orientation: it is an estimate of the runtime.
+  /// A position or orientation that is valid but not tracked is an estimate of the runtime.
   bool place_tracked = false, turn_tracked = false;
 
   bool valid() const { return place_valid && turn_valid; }
@@ -42,8 +42,8 @@ std::array<float, 9> axes_of(const HeadsetPose& pose);
 /// The direction in which a pose looks, a unit vector.
 std::array<float, 3> direction_of(const HeadsetPose& pose);
 
-/// Converts an eye's view to the form for stimuli. The eye's picture starts at x_px of the canvas.
-/// world_scale: metres of the room per metre of the scene.
+/// Converts an eye's view to an EyeView, from which stimuli draw. The eye's picture starts at x_px of the
+/// canvas. world_scale: metres of the room per metre of the scene.
 EyeView study_view(const HeadsetEye& eye, int x_px, double world_scale = 1);
 
 }  // namespace study

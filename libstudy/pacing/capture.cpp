@@ -126,8 +126,8 @@ class CaptureReader {
              base::shortened(names_.front()));
   }
 
-  /// The index of the column with this name; none if no column has it. base::Error if two columns have the
-  /// name, or if it is that of the option --column and no column has it.
+  /// The index of the column with this name; none if no column has the name. base::Error if two columns have
+  /// the name, or if no column has the name that the option --column gives.
   std::optional<std::size_t> place_of(const std::string& wanted) const {
     std::optional<std::size_t> found;
     std::vector<std::string> shown;
@@ -178,12 +178,13 @@ class CaptureReader {
 
   std::string file_, wanted_;
   std::istringstream lines_;
-  int number_ = 0;  ///< of the line, from 1
+  int number_ = 0;  ///< number of the last line read, from 1
   char separator_ = ',';
   std::vector<std::string> names_;
   bool named_ = false, displayed_ = false, first_ = true;
   std::size_t column_ = 0;
-  std::map<std::size_t, std::string> sources_;  ///< by place: value that all rows must have
+  /// By index of a column that names the process or the swap chain: the value that all rows must have.
+  std::map<std::size_t, std::string> sources_;
   FrameCapture out_;
 };
 
@@ -194,7 +195,7 @@ void cut(FrameCapture& capture, double seconds, const std::string& file) {
   while (count < capture.frame_ms.size() && time_s < seconds) time_s += 1e-3 * capture.frame_ms[count++];
   if (time_s < seconds)
     throw base::Error(file, fmt::format("lasts {:.3f} s, and --seconds asks for {:g}", time_s, seconds),
-                      "ask for less; a trace is repeated to the length of the stimulus");
+                      "lower --seconds; a trace is repeated to the length of the stimulus");
   capture.frame_ms.resize(count);
 }
 

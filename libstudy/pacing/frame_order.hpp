@@ -1,5 +1,6 @@
 #pragma once
-/// The order in which the rates of a schedule are shown. It changes the lag-1 correlation, not the moments.
+/// The order in which the frame rates of a schedule are shown. The order changes their lag-1 correlation, but
+/// not their mean and standard deviation.
 
 #include <cstdint>
 #include <span>

@@ -40,7 +40,7 @@ struct HoldList {
 /// The best list found whose holds sum to `total` periods (this fixes a harmonic mean); total = 0: any sum.
 /// If the best list has another sum, its excess is infinite. Deterministic: Lagrange multipliers for both
 /// moments, then exchanges of single periods between frames. Excess 0 proves that the target can be met.
-/// Excess > 0 does not prove the contrary; sd_bounds() may.
+/// Excess > 0 does not prove that the target cannot be met; sd_bounds() may prove it.
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
 /// Bounds of the standard deviation, frames/s, of every list of any length with exactly the target's mean and

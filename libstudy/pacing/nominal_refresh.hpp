@@ -12,12 +12,12 @@ inline constexpr std::array usual_refreshes{50.0,  60.0,  72.0,  75.0,  80.0,  8
 /// Two rates within this relative difference count as equal: 59.94 Hz is 60 Hz.
 inline constexpr double same_refresh = 0.005;
 
-/// The nominal rate of a display with the measured rate `hz`, Hz, for vip-study check, run and headset. The
-/// base is reported_hz (reported by the system; 0: none) if within 0.5 % of hz, else hz. Returns the usual
-/// rate nearest to the base among the usual rates within 0.5 % of both hz and the base; without one, the
-/// base. Schedules count holds in periods of the nominal rate, but a period lasts as long as the true rate
-/// says. A trial's frame rates then differ from its setting by the ratio of both rates; the timing verdict
-/// detects this.
+/// The nominal rate of a display with the measured rate `hz`, Hz, for vip-study check, run and headset.
+/// reported_hz: the rate that the system reports; 0: none. The base is reported_hz if it is within 0.5 % of
+/// hz, else hz. Returns the usual rate nearest to the base among the usual rates within 0.5 % of both hz and
+/// the base. If there is no such rate, returns the base. Schedules count holds in periods of the nominal
+/// rate, but a period of the display lasts 1 / true rate. A trial's frame rates then differ from its setting
+/// by the ratio of the true rate to the nominal rate; the timing verdict detects this.
 double nominal_refresh(double hz, double reported_hz = 0);
 
 }  // namespace study

@@ -79,7 +79,8 @@ PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus
                         Clock& clock, std::int64_t overrun_ns,
                         const std::function<void(const FrameRecord&)>& each);
 
-/// A protocol's tolerances for the timing of a trial. `relative` ones are fractions.
+/// A protocol's tolerances for the timing of a trial. Members with `relative` in their names are fractions of
+/// the nominal mean or standard deviation.
 struct TimingTolerance {
   double late_after_ms = 0.5;
   double mean_relative = 0.005;

@@ -39,12 +39,12 @@ class ContentCourse {
 
  private:
   std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) {
-    // Adds a millionth of a step, because rounding may put an onset at a step's start into the step before.
-    // The animation error moves the content of every second frame by its whole size: content steps are
-    // alternately longer and shorter.
+    // The animation error moves the content of every second frame, so that the steps of the content between
+    // frames are alternately longer and shorter.
     const double moved_s = (index % 2 == 1 ? rules_.animation_error_s : 0) - rules_.latency_s;
     const double elapsed =
         std::max(0.0, 1e-9 * static_cast<double>(onset_ns) + moved_s) / rules_.content_step_s;
+    // Adds a millionth of a step: an onset at the start of a step may be rounded into the step before.
     const std::int64_t gone =
         rules_.real_time ? std::max(gone_, static_cast<std::int64_t>(elapsed + 1e-6)) : index;
     gone_ = gone;
@@ -104,7 +104,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   const std::int64_t length_ns = std::accumulate(intervals_ns.begin(), intervals_ns.end(), std::int64_t{0});
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
-  std::int64_t making_ns = 0;  // recent largest time to make a frame
+  std::int64_t making_ns = 0;  // largest recent time to make a frame; decays by an eighth with each frame
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
     if (i > 0) display.hold(first_ns + onset_ns - 2 * making_ns, clock);
     const std::int64_t begun_ns = clock.now_ns();

@@ -39,7 +39,7 @@ std::vector<double> hitches(const TimingProfile& profile, double duration_s, std
   };
   double hitch_at_s = next_hitch();
   while (time_s < duration_s - base_s / 2) {
-    // A hitch begins with the frame that is on at its time, if the stimulus lasts long enough for it.
+    // The frame that is on at hitch_at_s becomes the hitch, if the stimulus lasts long enough for the hitch.
     const bool now = hitch_at_s < time_s + base_s && time_s + hitch_s < duration_s + base_s / 2;
     out.push_back(now ? hitch_s : base_s);
     time_s += out.back();

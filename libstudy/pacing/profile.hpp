@@ -1,5 +1,6 @@
 #pragma once
-/// Timing profiles: how long each frame of a stimulus stays on, beyond a mean and a standard deviation.
+/// Timing profiles: descriptions of how long each frame of a stimulus stays on, such as a mean and a standard
+/// deviation, hitches, or recorded frame times.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,13 +24,13 @@ inline constexpr std::size_t most_trace_frames = 100000;
 struct TimingProfile {
   ProfileKind kind = ProfileKind::Moments;
   double mean_fps = 60;  ///< Moments, Floor: harmonic mean. Hitches: rate between hitches. Frames/s
-  double sd_fps = 0;     ///< Moments
+  double sd_fps = 0;     ///< Moments: standard deviation, frames/s
   double hitch_ms = 0;   ///< Hitches: time for which the long frame stays on; at least 1000 / mean_fps
   double period_s = 1;   ///< Hitches: period, s; one hitch in each, in its middle when jitter is 0
   /// Hitches: share of the period, around its middle, over which the hitch is uniform, 0 to 1
   double jitter = 0;
-  double low_fps = 0;                 ///< Floor: "5 % low", at most mean_fps
-  std::vector<double> frame_ms = {};  ///< Trace
+  double low_fps = 0;  ///< Floor: rate of the longest 5 % of the frames, frames/s; at most mean_fps
+  std::vector<double> frame_ms = {};  ///< Trace: recorded frame times, ms
   bool smoothed = false;              ///< Trace: as many frames in the same time, all equally long
   /// The content shown lags behind the time of its frame by this constant, ms. Real-time content only.
   double latency_ms = 0;

@@ -25,7 +25,7 @@ class RealTimeScheduling {
   int old_policy_ = -1;  // -1: unchanged
   bool niced_ = false;
   int old_nice_ = 0;
-  int latency_file_ = -1;  // -1: not open; the latency request lasts while open
+  int latency_file_ = -1;  // /dev/cpu_dma_latency; the request lasts while the file is open; -1: not open
 };
 
 }  // namespace study

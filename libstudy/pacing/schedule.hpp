@@ -22,7 +22,7 @@ struct PacingRules {
   double fps_min = 4;               ///< lowest instantaneous rate, frames/s
   std::optional<double> fps_max;    ///< highest instantaneous rate, frames/s; none: no bound
   bool fps_max_is_refresh = false;  ///< the highest rate is the display's refresh; see for_display()
-  double max_interval_ms = 250;     ///< longest allowed interval
+  double max_interval_ms = 250;     ///< longest allowed time for which a frame is shown, ms
   FrameOrder order = FrameOrder::White;
   double ar1 = 0;                   ///< requested lag-1 autocorrelation for FrameOrder::Ar1, (-1, 1)
   std::vector<double> trace_rates;  ///< frame rates that FrameOrder::Trace takes the order from
@@ -55,7 +55,8 @@ std::string setting_name(const FpsSetting& setting);
 std::int64_t frame_count(const FpsSetting& setting);
 
 /// A schedule. Interval i is the time for which frame i is shown. If compile_schedule() makes it from a mean
-/// and a standard deviation, intervals_s meet both to 1e-9 and intervals_ns to 1e-6.
+/// and a standard deviation, the relative errors of both are at most 1e-9 in intervals_s and at most 1e-6 in
+/// intervals_ns. There the error of the standard deviation is relative to at least 1 frame/s.
 struct Schedule {
   std::vector<double> intervals_s;
   std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds

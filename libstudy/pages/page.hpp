@@ -42,7 +42,7 @@ class PageState {
   /// question, or confirms a page with a single question; at the button to go on, it confirms the page. Enter
   /// does nothing at a required question without a valid answer. On a Vas (visual analogue scale), the arrow
   /// keys set the mark: Left and Right move it by 1 % of the line, Up, Down, FarLeft and FarRight by 10 %.
-  /// The first one sets it at an end.
+  /// The first of these keys sets the mark at an end of the line.
   void press(PageKey key, std::int64_t now_ns);
   /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);
@@ -84,7 +84,7 @@ class PageState {
   bool out_of_range(std::size_t question) const;
   /// Number of questions that prevent confirming: required without an answer, or with an invalid answer.
   std::size_t missing() const;
-  /// Rest of the least reading time, s; the page cannot be confirmed before it is 0.
+  /// Remaining part of the shortest reading time, s; the page cannot be confirmed before this is 0.
   double wait_s(std::int64_t now_ns) const;
   bool can_confirm(std::int64_t now_ns) const;
   bool confirmed() const { return confirmed_ns_.has_value(); }
@@ -117,7 +117,7 @@ class PageState {
   std::optional<AnswerInput> confirmed_by_;
 };
 
-/// True if the question lists scores for the participant to see and each is a single digit.
+/// True if typing one digit can choose each score: the kind is listed, is no line, and has scores of 0 to 9.
 bool one_digit_does(const Question& question);
 
 }  // namespace study

@@ -1,5 +1,5 @@
-/// Checks names of methods, numbers of particles and ids of questions, which libsim and the analyses must
-/// know. Without the check, an unknown name could stay unnoticed until after the study.
+/// Checks names of methods and numbers of particles, which libsim must know, and ids of questions, which the
+/// analyses look for. Without the check, a misspelling could stay unnoticed until after the study.
 #include <algorithm>
 #include <charconv>
 
@@ -12,7 +12,6 @@ namespace study {
 
 namespace {
 
-/// True for a blank name. The readers of the design refuse blank names.
 bool among(const std::vector<std::string>& known, const std::string& word) {
   return std::find(known.begin(), known.end(), word) != known.end();
 }
@@ -20,6 +19,7 @@ bool among(const std::vector<std::string>& known, const std::string& word) {
 void check_methods(const base::TomlTable& design) {
   const auto methods = design.strings("method");
   for (std::size_t i = 0; i < methods.size(); ++i) {
+    // Skips blank names, because the readers of the design refuse them.
     if (base::is_blank(methods[i]) || among(method_names(), methods[i])) continue;
     design.fail_at("method", i, "= " + base::toml_quoted(methods[i]) + " is no method",
                    base::use_one_of(methods[i], method_names()));

@@ -76,7 +76,8 @@ enum class TrialOrder {
 };
 
 enum class Assignment {
-  Balanced,    ///< groups and rows are assigned by quotas over all participants except dropouts
+  /// groups and rows of the order's square are assigned by quotas over all participants except dropouts
+  Balanced,
   PaperRandom  ///< groups and orders are drawn at random for each participant, as in the paper
 };
 
@@ -87,7 +88,8 @@ struct Design {
   std::vector<Cell> cells;            ///< by group, in file order; trials name cells by their index
   std::vector<DesignFactor> factors;  ///< of format 3, in file order; empty in format 2
   std::vector<EffectSet> effects;     ///< levels in file order; empty: the design does not vary effects
-  bool paint_temperature = false;  ///< true: paints the water of every cell; each then needs the effect heat
+  /// True: the water of every cell is painted by its temperature. Every cell then needs the effect heat.
+  bool paint_temperature = false;
   TimingSource timing = TimingSource::Settings;
   bool pairs =
       false;  ///< true: each trial shows two cells; without `standard` all unordered pairs of a group

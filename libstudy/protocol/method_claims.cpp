@@ -27,7 +27,7 @@ std::vector<std::string> one_or_several(const base::TomlTable& table, const char
   for (std::size_t i = 1; i < out.size(); ++i)
     if (std::find(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(i), out[i]) !=
         out.begin() + static_cast<std::ptrdiff_t>(i))
-      table.fail_at(key, i, "= " + base::toml_quoted(out[i]) + " stands there twice", "remove one");
+      table.fail_at(key, i, "= " + base::toml_quoted(out[i]) + " is listed twice", "remove one");
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Hypotheses about methods, which Task 1 and Task 2 test: the tables [[hypothesis]] of a plan file with the
-/// key `task`. The paper's ship with the programs (protocols/plans/paper.toml).
+/// key `task`. The paper's hypotheses ship with the programs (protocols/plans/paper.toml).
 
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@ namespace study {
 
 using MethodClaims = std::vector<stats::MethodClaim>;
 
-/// Reads those of the tables that have the key `task`. base::Error at file:line:column for a wrong value and
-/// for an id that an earlier table has.
+/// Reads the tables that have the key `task`; skips the other tables. base::Error at file:line:column for a
+/// wrong value, or for an id that another table has.
 MethodClaims read_method_claims(const std::vector<base::TomlTable>& tables);
 
 /// The claims as tables [[hypothesis]], which read_method_claims() reads back.
@@ -33,7 +33,7 @@ std::vector<std::string> ids_of(const MethodClaims& claims);
 /// The ids of the claims for which `flag` is true: "A, B and C".
 std::string ids_with(const MethodClaims& claims, bool stats::MethodClaim::*flag);
 
-/// The word in plan files: "paired_t", "tost" or "binomial".
+/// The name of the statistical test in plan files: "paired_t", "tost" or "binomial".
 const char* claim_test_word(stats::HypothesisKind kind);
 
 }  // namespace study

@@ -15,7 +15,9 @@ namespace study {
 enum class ProcedureKind {
   Staircase,  ///< transformed or weighted up-down rule (Levitt 1971, Kaernbach 1991)
   QuestPlus,  ///< QUEST+ (Watson 2017)
-  Ptpe        ///< settings near the contour that the ratings so far suggest (stats/ptpe/placement.hpp)
+  /// Means and standard deviations of the frame rate near the contour of equal rating that the ratings so far
+  /// suggest (stats/ptpe/placement.hpp).
+  Ptpe
 };
 
 /// A track is the sequence of trials whose cells differ only in the level of `factor`. Each combination of
@@ -29,9 +31,9 @@ struct Procedure {
   std::vector<double> values;
   std::string axis;               ///< key of the levels' timing, such as "hitch_ms"; empty for Ptpe
   std::vector<double> deviation;  ///< Ptpe: standard deviation of the frame rate of each level
-  int trials = 40;                ///< of each track
-  /// The score that counts as a positive answer. Pairs: the score of the interval with the comparison counts
-  /// if `comparison` is true, that of the standard if it is false.
+  int trials = 40;                ///< number of trials of each track
+  /// The score that counts as a positive answer; none for pairs. In pairs, the choice of the comparison
+  /// counts as positive if `comparison` is true, and the choice of the standard if it is false.
   std::optional<int> positive;
   bool comparison = true;
 
@@ -45,7 +47,7 @@ struct Procedure {
   int most_of_one = 1000;
   /// QuestPlus, Ptpe: number of trials at the start of a track whose level the answers do not choose.
   /// QuestPlus spreads them evenly over the levels. Ptpe gives them the standard deviations between the
-  /// smallest and the largest. They allow checks of the model.
+  /// smallest and the largest. These trials allow checks of the model.
   int fixed = 0;
 };
 

@@ -84,23 +84,25 @@ enum class Interruption {
 
 struct Block {
   BlockKind kind = BlockKind::Instructions;
-  std::string id;                   ///< unique in the protocol
-  std::string title;                ///< heading of the page; may be empty
-  std::string text;                 ///< plain text of the page; empty lines separate paragraphs
-  double seconds = 0;               ///< Rest, Break, Black: length. Instructions, Debrief: shortest display
+  std::string id;     ///< unique in the protocol
+  std::string title;  ///< heading of the page; may be empty
+  std::string text;   ///< plain text of the page; empty lines separate paragraphs
+  /// Rest, Black: length, s. Break, Instructions, Debrief: time after which the participant can continue, s.
+  double seconds = 0;
   std::vector<Question> questions;  ///< asked on the block's page; Stimulus: by its steps
   /// Practice, Repeat: number of trials. Catch: number of pages, at random positions in the block `like`.
   /// GazeValidation: number of tries.
   int count = 0;
-  /// GazeValidation: horizontal and vertical angle from the middle target to the outer targets.
+  /// GazeValidation: horizontal and vertical angle from the middle target to the outer targets, degrees.
   double extent_deg = 10;
-  /// GazeValidation: largest mean error over the targets with which a try passes. None: any error passes.
+  /// GazeValidation: a try passes if every target had a valid sample and the mean error over the targets is
+  /// at most this, degrees. None: any mean error passes.
   std::optional<double> max_accuracy_deg;
   std::string like;              ///< Practice, Repeat, Catch: id of a Stimulus block
   std::vector<TrialStep> steps;  ///< Practice, Stimulus, Repeat: steps of each trial
   double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
   int break_every = 0;           ///< Stimulus, format 3: trials from one break to the next; 0 = no break
-  double break_s = 0;            ///< least duration of these breaks
+  double break_s = 0;            ///< shortest duration of these breaks, s
   Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: the policy of `like`
 };
 

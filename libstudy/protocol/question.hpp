@@ -16,7 +16,7 @@ enum class AnswerKind {
   Number,   ///< typed, such as years of age
   Text,     ///< typed text; exported only on request
   Vas,      ///< a point of a line with words at both ends (visual analogue scale)
-  YesNo,    ///< a choice of 0 (no) and 1 (yes), also by a letter
+  YesNo,    ///< a choice of 0 (no) and 1 (yes), which letter keys also select
   Reaction  ///< a press as soon as the page appears: 1, or 0 if none came within Question::timeout_s
 };
 

@@ -185,7 +185,7 @@ Interruption read_interruption(const base::TomlTable& table) {
   return word == "invalidate" ? Interruption::Invalidate : Interruption::Resume;
 }
 
-/// A break after every so many trials of a study with factors.
+/// Reads break_every and break_s: the breaks between the trials of a design of format 3.
 void read_breaks(const base::TomlTable& table, const Design& design, Block& block) {
   if (!table.has("break_every")) {
     if (table.has("break_s"))

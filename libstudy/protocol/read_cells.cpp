@@ -71,8 +71,8 @@ void check_level(const base::TomlTable& row, std::string_view key, const std::st
   }
 }
 
-/// Moments of the frame rate from [[design.moments]], by scene, n_* and method. All levels of effects share
-/// them.
+/// Moments of the frame rate from [[design.moments]], by scene, n_* and method. Cells that differ only in
+/// their effects have the same moments.
 class PublishedMoments {
  public:
   PublishedMoments(const base::TomlTable& design, const Factors& factors) : design_(design) {

@@ -196,7 +196,9 @@ void check_trial_count(const base::TomlTable& table, const Design& design) {
   }
 }
 
-/// Limits the number of slots in the assignment, because the assignment counts the uses of each slot.
+/// Limits the number of slots (different sessions) of the assignment, because the assignment counts the uses
+/// of each slot. The bound is the number of sequences of groups, times the rows of the order's square (at
+/// most two for each trial), and for pairs times 64 for the rounds that balance the order within pairs.
 void check_places(const base::TomlTable& table, const Design& design) {
   const bool rows = design.order == TrialOrder::Latin || design.order == TrialOrder::Williams;
   const double places =

@@ -17,15 +17,16 @@ inline constexpr base::Range pause_range{0, 3600};
 
 /// Reads a text that is not blank.
 std::string text_of(const base::TomlTable& table, std::string_view key);
-/// Reads an id that is valid in steps and data tables: a letter, then letters, digits and '_', at most 64.
+/// Reads an id that is valid in steps and data tables: a letter, then letters, digits and '_', at most 64
+/// characters.
 std::string id_of(const base::TomlTable& table, std::string_view key);
 /// True if `word` has the form of an id; see id_of().
 bool is_id(std::string_view word);
 /// Text of a number for messages.
 std::string shown(double value);
 
-/// Reads all fields except place, text and sha256. Does not refuse unknown keys (TomlTable::finish), so that
-/// a test can list the keys that the readers ask for.
+/// Reads all fields of a protocol except place, text and sha256. Does not refuse unknown keys
+/// (TomlTable::finish), so that a test can list the keys that the readers look up.
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 /// Reads [design] of format 2.
@@ -52,7 +53,7 @@ void check_procedure_question(const base::TomlTable& table, const Design& design
 TimingProfile read_profile(const base::TomlTable& table);
 /// True if `word` is in method_names().
 bool is_method(const std::string& word);
-/// True for a positive whole number, optionally with the suffix k.
+/// True for a positive whole number, optionally with the suffix k or K.
 bool is_particle_count(const std::string& word);
 inline constexpr int most_trials = 1000;  ///< largest number of trials of one participant
 inline constexpr std::size_t most_cells = 1000;
@@ -73,9 +74,9 @@ void check_question_ids(const std::vector<base::TomlTable>& tables, const std::v
 /// Reads the questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
-/// Checks what involves several blocks: unique ids, equal stop_at of all fms blocks, `accept` only before the
-/// first trials, reactions alone on their pages, the ids in `like` and `ask`, and `count`. Copies steps and
-/// the policy for interruptions to practice and repeat blocks. tables: the blocks' TOML tables.
+/// Checks the rules that involve several blocks: unique ids, equal stop_at of all fms blocks, `accept` only
+/// before the first trials, reactions alone on their pages, the ids in `like` and `ask`, and `count`. Copies
+/// steps and the policy for interruptions to practice and repeat blocks. tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Reference of all keys of a protocol file. A test compares this list with the keys that the readers ask
-/// for.
+/// Reference of all keys of a protocol file. A test compares the list of keys with the keys that the readers
+/// look up.
 
 #include <string>
 #include <vector>
@@ -13,10 +13,10 @@ using base::KeyReference;
 
 const std::vector<KeyReference>& protocol_reference();
 
-/// The sections, which are the tables of a protocol, with what a table holds.
+/// The sections of the reference: one for each kind of table in a protocol file, with a description.
 const std::vector<base::TableReference>& protocol_tables();
 
-/// A small complete protocol of format 3, which the page shows.
+/// A small complete protocol of format 3, the example in protocol_reference_page().
 const std::string& protocol_example();
 
 /// The reference as a Markdown page, which is stored as docs/protocol.md.

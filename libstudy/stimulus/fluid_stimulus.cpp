@@ -47,8 +47,8 @@ std::string painted_words(const std::optional<sim::TemperatureScale>& scale) {
   return scale ? ", painted " + scale->words() : "";
 }
 
-/// Point at which the forward axis of an eye meets its picture, px from the lower left. It is not the middle,
-/// because a headset's frusta are off-centre.
+/// Point at which the forward axis of an eye meets its picture, px from the lower left. This is not the
+/// middle of the picture, because a headset's frusta are off-centre.
 std::pair<double, double> straight_ahead(const sim::View& view) {
   const sim::PixelRays rays = sim::pixel_rays(view);
   return {static_cast<double>(-rays.offset_x / rays.scale_x),

@@ -144,7 +144,7 @@ struct StimulusChoice {
   /// Live fluid only: all numbers of the solver; it replaces `method`, `n_star`, `fixed_rate` and `model`.
   /// tau then follows from the setting's beta instead of a frame rate. None = the default numbers.
   std::optional<sim::SolverSetting> setting = {};
-  stats::PtpeModel model;
+  stats::PtpeModel model;  ///< live fluid only: model from which tau follows for a frame rate
   /// Live fluid only: effects that replace the effects of the scene's file. None = the effects of the file.
   std::optional<std::vector<sim::Effect>> effects = {};
   std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< live fluid only: as `effects`
@@ -154,11 +154,12 @@ struct StimulusChoice {
   sim::RenderOptions render = {};  ///< live fluid only
 };
 
-/// base::Error for files that cannot be read, unknown words, and a bake whose frame interval differs from
-/// content_step_s.
+/// Makes the stimulus of a choice. base::Error for files that cannot be read, unknown words, and a bake whose
+/// frame interval differs from content_step_s.
 std::unique_ptr<Stimulus> make_stimulus(const StimulusChoice& choice);
 
-/// Makes the live fluid of a choice and ignores its `bake`. settling: see SimulationOptions::settling.
+/// Makes the live fluid of a choice and ignores its `bake`. settling: called after each settling frame with
+/// (done, total).
 std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
                                            const std::function<void(int, int)>& settling = {});
 

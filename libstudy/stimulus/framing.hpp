@@ -35,7 +35,7 @@ struct Viewing {
   bool true_angle = false;
 };
 
-/// Vertical angles of a picture, degrees in (0, 180).
+/// Vertical angles of view of a picture, degrees in (0, 180).
 struct Framing {
   double camera_deg = 0;
   std::optional<double> visual_deg;  ///< visual angle of the picture; none: unknown

@@ -14,8 +14,8 @@ namespace study {
 /// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. A
 /// separate thread draws the view in a context that shares the headset's pictures, reads the pixels back and
 /// shows them in the window. The window has another context, because the headset's OpenGL may be on another
-/// display or device. The session's thread never waits for the mirror. A slot waits for at most one strip of
-/// the mirror's picture (mirror_picture.cpp).
+/// display or device. The session's thread never waits for the mirror. Drawing a frame of the headset waits
+/// for at most one strip of the mirror's picture (mirror_picture.cpp).
 class HeadsetMirror {
  public:
   /// Call it on the display's thread; the display must outlive the mirror. reveal: shows stimuli too;
@@ -31,7 +31,7 @@ class HeadsetMirror {
 
   HeadsetDisplay& display_;
   bool reveal_;
-  sim::GlContext pictures_;  ///< current only while a picture is taken
+  sim::GlContext pictures_;  ///< shares the headset's pictures; current only while the mirror draws
   std::mutex mutex_;
   std::condition_variable changed_;
   bool over_ = false;

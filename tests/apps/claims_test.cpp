@@ -255,7 +255,7 @@ TEST(Claims, MistakesInTheirTablesAreRefusedAtTheirPlace) {
   refuse("\"Ours\"", "\"Ourz\"", "plan.toml:7:");
   refuse("\"Ours\"", "\"Ourz\"", "the nearest is \"Ours\"");
   refuse("\"HiRes\"", "[\"Ours\", \"HiRes\"]", "compares Ours with itself");
-  refuse("\"HiRes\"", "[\"HiRes\", \"HiRes\"]", "stands there twice");
+  refuse("\"HiRes\"", "[\"HiRes\", \"HiRes\"]", "is listed twice");
   refuse(", {method = \"HiRes\"}", "", "holds 1 tables");
   refuse("task1", "task3", "plan.toml:5:");
   refuse("\"realism\"", "\"choice\"", "is no outcome of this task");

@@ -31,7 +31,7 @@ TypeSizes type_for_x_height(float x_height_px);
 
 class Gui {
  public:
-  /// The surface that the pictures are drawn on, and its input.
+  /// The surface on which the pages are drawn, and its input.
   struct Host {
     /// Called before each picture: writes size, pointer and typed keys to Dear ImGui's IO.
     std::function<void()> look;

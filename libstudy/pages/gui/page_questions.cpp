@@ -15,7 +15,8 @@ using study::Question;
 
 namespace {
 
-/// Part of a line's length by which the gaze may stray while it sets a mark by dwelling.
+/// How far the gaze may move along the line of a Vas while it sets a mark by dwelling, as a fraction of the
+/// line's length.
 constexpr float dwell_reach = 0.04F;
 
 }  // namespace
@@ -117,7 +118,7 @@ void PageView::draw_anchors(const Question& question, float left, float cell) {
   ImGui::Dummy({1, 1});
 }
 
-/// Draws a line with words below its ends, and a mark once the participant set one.
+/// Draws a Vas: a line with words below its ends, and a mark once the participant has set it.
 void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Question& question = state.question(i);
   const auto range = static_cast<float>(question.scale_max - question.scale_min);
@@ -128,8 +129,8 @@ void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   ImGui::PushID(static_cast<int>(i));
   ImGui::InvisibleButton("line", {column_, height});
   if (ImGui::IsItemHovered()) {
-    // The target changes when the gaze moves along the line by more than dwell_reach. The dwell then begins
-    // again, so only a gaze that stays sets the mark.
+    // The target changes when the pointer moves along the line by more than dwell_reach. The dwell then
+    // begins again, so that only a gaze that rests sets the mark.
     if (std::abs(at - looked_at_) > dwell_reach) looked_at_ = at;
     gui_.point_at(ImGui::GetID(std::to_string(looked_at_).c_str()));
   }

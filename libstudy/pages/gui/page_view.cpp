@@ -33,7 +33,7 @@ std::size_t end_of_table(const PageState& state, std::size_t first) {
   return end - first >= fewest_rows ? end : first + 1;
 }
 
-/// The letters that choose the answers of a YesNo, as capitals: yes first. Empty if there are none.
+/// The keys that choose yes (first) and no in a YesNo, as capital letters. Empty if an answer has no key.
 std::pair<std::string, std::string> keys_of(const Question& question) {
   auto keys = std::pair{letter_of(question, 1), letter_of(question, 0)};
   for (std::string* key : {&keys.first, &keys.second})

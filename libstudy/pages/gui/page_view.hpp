@@ -85,12 +85,12 @@ class PageView {
   float column_ = 0;  ///< width of the text column, px
   float height_ = 0;  ///< height of the last drawn content, px
   float scroll_lines_ = 0;
-  bool armed_ = false;                    ///< the mouse button was up while input was accepted
+  bool armed_ = false;                    ///< clicks count: the button was up while input was accepted
   bool pointed_ = false;                  ///< the mouse moved since the page appeared
   float mouse_x_ = -1, mouse_y_ = -1;     ///< mouse position when the page appeared
-  float looked_at_ = -1;                  ///< place on a line near which the pointer stays, 0 to 1
+  float looked_at_ = -1;                  ///< place on the line of a Vas where the pointer rests, 0 to 1
   std::size_t seen_focus_ = 0;            ///< question to which the page has scrolled
-  std::size_t editing_ = ~std::size_t{};  ///< index of the Text question in whose edit field one types
+  std::size_t editing_ = ~std::size_t{};  ///< index of the Text question whose edit field is open
   std::string edited_;                    ///< content of this edit field, padded to PageState::most_bytes
   std::optional<Pad> pad_;                ///< on-screen keyboard of pad_question_
   std::size_t pad_question_ = 0;

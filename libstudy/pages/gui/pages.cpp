@@ -7,9 +7,9 @@ namespace study {
 
 namespace {
 
-// s; less than 50 ms, the interval in which the session's check must run.
+// Longest wait for input, s: below 50 ms, because the session's check must run at least every 50 ms.
 constexpr double poll_s = 0.03;
-// s; for a Reaction, because a gamepad is read once in this time.
+// The same on the page of a Reaction, s: short, because a gamepad is read only once in each wait.
 constexpr double reaction_poll_s = 0.002;
 
 /// Exception that closes the stop dialog when the session ends for another reason.

@@ -90,7 +90,7 @@ class PageParticipant final : public Participant {
   bool offer(Offer offer, Clock& clock, const Check& check) override;
 
  private:
-  /// The texts of a block's page. The session's first page says how to stop; the button of the last one says
+  /// The texts of a block's page. The session's first page says how to stop; the button of the last page says
   /// Finish.
   PageText page_of(const Block& block);
 

@@ -12,7 +12,7 @@ struct AnswerWays {
   bool keyboard = false;  ///< keys of the terminal that started the program
 };
 
-/// The ways if the user names none: all but dwell.
+/// The ways to answer if the option --answer is not given: all but dwell.
 extern const char* const usual_answer_ways;
 
 /// Parses comma-separated words such as "ray,stick". base::Error for unknown words, for no word, and for ray

@@ -13,8 +13,8 @@ class Dwell {
   static constexpr std::int64_t blink_ns = 300'000'000;
 
   /// target: the target looked at since the last call, 0 for none. seen: true if the eyes are tracked.
-  /// Returns true once the target was looked at for whole_ns. To choose it again, the gaze must leave it
-  /// first.
+  /// Returns true once the target was looked at for whole_ns. To choose the same target again, the gaze must
+  /// first leave it.
   bool look(unsigned target, bool seen, std::int64_t now_ns);
   /// Fraction of whole_ns spent on the current target, 0 to 1; 0 once it was chosen.
   float progress() const;

@@ -16,7 +16,8 @@ class HandKeys {
   /// A stick that stays pushed repeats its key after hold_ns, then every again_ns.
   static constexpr std::int64_t hold_ns = 500'000'000, again_ns = 150'000'000;
 
-  /// Returns the events that begin in this slot. stick = false: only the stop dialog.
+  /// Returns the events that begin in this slot (frame of the headset), whose time is now_ns. stick = false:
+  /// only the event that opens the stop dialog.
   std::vector<PageEvent> take(const HeadsetHands& hands, bool stick, std::int64_t now_ns);
   /// Ignores the stick and the menu button until they are released.
   void forget();
@@ -26,8 +27,8 @@ class HandKeys {
 
   std::optional<PageKey> pushed_;
   bool locked_ = false;        ///< the stick must be released first
-  std::int64_t next_ns_ = 0;   ///< when a pushed stick repeats its key
-  std::int64_t menu_ns_ = -1;  ///< when menu was pressed; -1: not pressed
+  std::int64_t next_ns_ = 0;   ///< time at which a pushed stick repeats its key
+  std::int64_t menu_ns_ = -1;  ///< time at which the menu button was pressed; -1: not pressed
   bool menu_done_ = false;
 };
 

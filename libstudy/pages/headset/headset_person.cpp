@@ -31,7 +31,8 @@ namespace {
 ///
 /// A page appears upright in front of the head and stays there until the head turns or moves far away. It
 /// fades to black when it ends. Input is ignored while the headset is not focused. A long press of the menu
-/// button, or Stop on the page, opens the stop dialog. poll() and show_black() wait for slots of the display.
+/// button, or Stop on the page, opens the stop dialog. poll() and show_black() wait for slots (frames) of the
+/// headset.
 class HeadsetSurface final : public PageSurface {
  public:
   /// display: made with choice_for_person(); it must outlive the surface.
@@ -79,7 +80,7 @@ class HeadsetSurface final : public PageSurface {
   std::vector<PageEvent> events_;
   std::optional<std::pair<std::int64_t, std::int64_t>> away_;
   std::optional<std::int64_t> away_since_ns_;
-  std::optional<std::int64_t> last_ns_;  ///< time of the previous slot
+  std::optional<std::int64_t> last_ns_;  ///< predicted time of the previous slot
   HeadsetPose head_;                     ///< last known pose of the head
   int head_world_ = 0, page_world_ = 0;  ///< HeadsetRecord::world of head_ and of page_
   std::optional<HeadsetPage> page_;      ///< position of the shown page; none: no page
@@ -92,7 +93,7 @@ class HeadsetSurface final : public PageSurface {
 };
 
 constexpr double fade_s = 0.2;
-constexpr float picture_s = 1.0F / 60;  // s, for Dear ImGui; pages do not depend on it
+constexpr float picture_s = 1.0F / 60;  // s; Dear ImGui needs a frame time, but the pages do not depend on it
 // The stick hides the pointer until the hand moves the pointer this far, px: about 2 degrees.
 constexpr float moved_px = 60;
 
@@ -158,8 +159,9 @@ void HeadsetSurface::take_in(const HeadsetRecord& record) {
 /// down when the focus returns are ignored until released.
 bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   if (!focused && !away_since_ns_) {
-    away_since_ns_ =
-        last_ns_.value_or(now_ns);  // time of the last slot: an unworn headset or a lost session has no slots
+    // Counts from the last slot before now_ns, because no slots come while the headset is not worn or the
+    // session is lost.
+    away_since_ns_ = last_ns_.value_or(now_ns);
     pointer_.reset();
     pressed_ = false;
     dwell_.reset();
@@ -173,8 +175,8 @@ bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   return !focused;
 }
 
-/// The point of the page at which the hand that pointed last points, else the other hand; none if neither
-/// does.
+/// The point of the page at which a hand points, preferably the hand that pointed last; none if no hand
+/// points at the page.
 HeadsetSurface::Place HeadsetSurface::hand_place(const HeadsetHands& hands) {
   for (const std::size_t hand : {hand_, 1 - hand_}) {
     const auto& aim = hands.aim[hand];

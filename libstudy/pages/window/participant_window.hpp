@@ -28,7 +28,7 @@ class Gamepad {
  private:
   static constexpr std::size_t buttons = 17;          ///< those of GLFW, then the left and the right trigger
   std::array<std::array<bool, buttons>, 16> down_{};  ///< [joystick][button]
-  std::int64_t repeat_ns_ = 0;  ///< when a held direction pad repeats its key; steady clock
+  std::int64_t repeat_ns_ = 0;  ///< time at which a held direction pad repeats its key, on GLFW's clock
 };
 
 struct ParticipantWindowOptions {

@@ -16,7 +16,7 @@ namespace study {
 struct BakeOrder {
   StimulusChoice fluid;
   std::int64_t frames = 600;          ///< content steps, including the state at the start
-  base::PictureSize size{1280, 720};  ///< size of the picture in which the gaze is, and of stored pictures
+  base::PictureSize size{1280, 720};  ///< size of stored pictures, and of the picture that contains the gaze
   bool pictures = false;              ///< true: also store pictures, not only particles
   /// True: the gaze follows the scene's gaze keys. False: the gaze is at the middle of the picture, as in a
   /// session with fixation.
@@ -29,8 +29,9 @@ struct BakeOrder {
 sim::BakeHeader header_of(const BakeOrder& order);
 
 /// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,
-/// method, n_*, effects, content step and too few frames. Compares foam, tau and gaze only where the wanted
-/// bake needs them; painted temperatures also if the bake has pictures. Empty: none.
+/// method, n_*, effects, content step and too few frames. Compares foam, tau and gaze only if the wanted bake
+/// uses them. Compares painted temperatures if `found` has pictures; otherwise `found` must store
+/// temperatures if `wanted` paints them. Empty: no differences.
 std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
 /// Differences between the views of two bakes (camera, picture size and angles). A bake has a view if it

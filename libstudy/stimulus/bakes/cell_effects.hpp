@@ -37,8 +37,8 @@ void check_cell_effects(const Protocol& protocol);
 /// the design does not vary effects.
 std::string levels_in_words(const Protocol& protocol, const sim::Scene& scene);
 
-/// The painted range of temperatures in this scene, such as "temperature 293.15 to 353.15 K". It is the same
-/// at every level.
+/// The painted range of temperatures in this scene, such as "temperature 293.15 to 353.15 K". The range
+/// is the same at every level of effects.
 std::string temperatures_in_words(const Protocol& protocol, const sim::Scene& scene);
 
 }  // namespace study

@@ -114,9 +114,9 @@ void SessionBakes::use_file(const Protocol& protocol, const SessionLook& look) {
   for (Source& source : sources_) {
     source.bake = bake;
     sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
-    wanted.frame_count = std::min(
-        wanted.frame_count, bake->header.frame_count);  // ContentRules::at_end applies after its last frame
-    wanted.frame_dt_s = bake->header.frame_dt_s;        // make_stimulus() checks the content step
+    // A shorter bake is no departure, because ContentRules::at_end applies after its last frame.
+    wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);
+    wanted.frame_dt_s = bake->header.frame_dt_s;  // make_stimulus() checks the content step
     for (const std::string& one : fluid_departures(bake->header, wanted)) {
       if (std::find(departures.begin(), departures.end(), one) == departures.end()) departures.push_back(one);
     }

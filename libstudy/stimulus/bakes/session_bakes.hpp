@@ -27,8 +27,8 @@ class SessionBakes {
   SessionBakes() = default;
   /// `path`: argument of `vip-study run --stimulus`; empty: no bake. base::Error for a single file if the
   /// protocol has several stimuli, and for a folder without any bake of the protocol. base::Error also for a
-  /// bake in a folder whose fluid differs from the session's, or whose levels followed a picture of another
-  /// size or angle.
+  /// bake in a folder whose fluid differs from the session's, or whose method chose the particles' levels by
+  /// the gaze in a picture of another size or angle.
   SessionBakes(const std::filesystem::path& path, const Protocol& protocol, const SessionLook& look);
 
   /// The bake of a cell; null if the cell runs live.
@@ -59,7 +59,7 @@ class SessionBakes {
   std::string departure_, options_;
 };
 
-/// The recorded bakes of sessions that are resumed.
+/// The bakes of an interrupted run, as its sessions recorded them.
 struct RecordedBake {
   std::string path;   ///< file or folder; empty: no bake
   std::string shown;  ///< recorded description of the stimuli, with the hash of each bake

@@ -10,7 +10,7 @@
 namespace study {
 
 struct BakeHooks {
-  std::function<void(int, int)> settling;    ///< see SimulationOptions::settling
+  std::function<void(int, int)> settling;    ///< called after each settling frame with (done, total)
   std::function<void(std::int64_t)> frames;  ///< called after each frame with the number of written frames
   std::function<void()> stop = [] {};        ///< called before each frame; may throw to stop baking
 };
@@ -25,7 +25,7 @@ inline bool draws(const sim::BakeHeader& header) { return header.view.drawn(); }
 sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const std::filesystem::path& out,
                           bool overwrite, const BakeHooks& hooks);
 
-/// Speeds of reading a bake, in frames per second that were read, checked and decoded.
+/// Results of reading a bake. Speeds are in frames per second that were read, checked and decoded.
 struct ReadingSpeed {
   double particles = 0;
   double pictures = 0;             ///< 0 if the bake has no pictures
