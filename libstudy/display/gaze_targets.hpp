@@ -10,8 +10,8 @@
 
 namespace study {
 
-/// A gaze sample while a target is shown: directions of the gaze and the target in one frame, x right, y up,
-/// z back.
+/// A gaze sample while a target is shown: directions of the gaze and the target in the same frame of
+/// reference, x right, y up, z back.
 struct TargetSample {
   bool valid = false;
   std::array<double, 3> gaze{}, target{};

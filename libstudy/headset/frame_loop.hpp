@@ -166,7 +166,7 @@ class FrameLoop {
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move
   LoopFacts facts_;
   std::int64_t slots_ = 0;           ///< number of slots begun
-  std::int64_t last_system_ns_ = 0;  ///< when the last slot began, on the system's clock
+  std::int64_t last_system_ns_ = 0;  ///< time at which the last slot began, on the system's clock
   std::vector<HeadsetEvent> events_;
   std::vector<HeadsetRecord> records_;
   std::exception_ptr error_;  ///< error that ended the slot thread

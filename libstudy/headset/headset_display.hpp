@@ -24,8 +24,8 @@ class HeadsetDisplay final : public Display {
  public:
   /// Connects, then waits until the headset is worn and its refresh rate has settled. base::Error if the
   /// OpenXR loader, the runtime or the headset is missing, if the headset is not put on, or if its refresh
-  /// rate does not settle at the rate that the rules require. With SlotDrive::Caller also if the runtime's
-  /// time advances between calls.
+  /// rate does not settle at the rate that the rules require. With SlotDrive::Caller, base::Error
+  /// also if the runtime's time advances between calls.
   explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {}, const HeadsetRules& rules = {});
 
   std::string description() const override;

@@ -13,7 +13,7 @@ namespace {
 
 /// Distance of the targets, m: about the focal distance of headsets' lenses.
 constexpr double distance_m = 2;
-constexpr double size_deg = 1, dot_share = 0.2;  ///< width of a target; width of its dot as a fraction of it
+constexpr double size_deg = 1, dot_share = 0.2;  ///< width of a target; width of its dot / this width
 /// Longest call of check() after which the samples still count, ns. A longer call means that the participant
 /// read another page meanwhile.
 constexpr std::int64_t most_checking_ns = 200'000'000;

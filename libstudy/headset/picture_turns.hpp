@@ -21,8 +21,8 @@ class PictureTurns {
     dropped_ = false;
     return drawn_;
   }
-  /// Makes the last begun picture wait for its slot, unless it was dropped. It replaces a picture that still
-  /// waits.
+  /// Makes the last begun picture wait for its slot, unless the picture was dropped. A picture that still
+  /// waits is discarded.
   void post() {
     if (!dropped_) waiting_ = drawn_;
   }

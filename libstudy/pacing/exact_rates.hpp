@@ -1,5 +1,6 @@
 #pragma once
-/// The frame rates of a schedule, with exact mean and standard deviation, before they are ordered.
+/// The frame rates of a schedule, with exact mean and standard deviation, in ascending order. ordered() then
+/// puts them in the order of display (frame_order.hpp).
 
 #include <vector>
 

@@ -44,10 +44,10 @@ struct HoldList {
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
 /// Bounds of the standard deviation, frames/s, of every list of any length with exactly the target's mean and
-/// holds from shortest to longest. Both come from lists with two different holds, the extreme points of all
-/// lists with this mean. low: the smallest standard deviation of these pairs. high^2: the minimum over c of
-/// the largest mean of (rate - c)^2 among the pairs, because a variance is the minimum over c of the mean of
-/// (rate - c)^2. low > high: no list has this mean.
+/// holds from shortest to longest. Both bounds come from lists with two different holds, which are the
+/// extreme points of the set of all lists with this mean. low: the smallest standard deviation of these
+/// pairs. high^2: the minimum over c of the largest mean of (rate - c)^2 among the pairs, because a variance
+/// is the minimum over c of the mean of (rate - c)^2. low > high: no list has this mean.
 struct SdBounds {
   double low = 1, high = 0;
 };

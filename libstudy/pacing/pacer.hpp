@@ -17,9 +17,10 @@ namespace study {
 enum class AtEnd { Loop, Hold };
 
 /// How content advances. real_time = false (per_frame, the paper's interpretation): frame i shows content
-/// step start_frame + i. real_time = true: frame i shows the content step of its scheduled time, or without a
-/// schedule of the time at which the program began to make it; times count from the first frame. At its end,
-/// a process of finite length goes back to start_frame (Loop) or stays at its last step (Hold).
+/// step start_frame + i. real_time = true: frame i shows the content step of its scheduled time. Without a
+/// schedule, the time at which the program began to make the frame replaces the scheduled time. Times count
+/// from the first frame. At its end, a process of finite length goes back to start_frame (Loop) or stays at
+/// its last step (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;

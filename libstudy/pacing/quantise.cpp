@@ -64,9 +64,10 @@ double sd_miss(const HoldList& list, const HoldTarget& target) {
 double mean_miss(const HoldList& list, const HoldTarget& target) { return std::abs(list.mean - target.mean); }
 
 /// The best list of holds with a mean within 0.5 % of the target; no holds if there is none. For a harmonic
-/// mean it searches every total of periods in this range. Lists within the tolerance of the standard
-/// deviation come first. If there are none, the lists remain whose error of the standard deviation is at most
-/// one tolerance above the least such error. Among the remaining lists the nearest mean wins.
+/// mean it searches every total of periods in this range. Keeps the lists within the tolerance of the
+/// standard deviation. If there are none, keeps the lists whose error of the standard deviation exceeds the
+/// least such error by at most one tolerance. Of the lists kept, returns the list with the mean nearest to
+/// the target.
 HoldList approximate_list(HoldTarget target) {
   const double bound = approximate_mean * target.mean;
   std::vector<HoldList> found;

@@ -15,8 +15,8 @@ namespace study {
 using stats::FpsMean;
 enum class FrameOrder { White, Ar1, Trace };
 
-/// The part of a protocol that determines the list of frame intervals for a setting (mu, delta). The
-/// protocol's hash covers these rules.
+/// The part of a protocol that determines the list of frame intervals for a setting (mean and standard
+/// deviation of the frame rate). The protocol's hash covers these rules.
 struct PacingRules {
   FpsMean mean = FpsMean::Harmonic;
   double fps_min = 4;               ///< lowest instantaneous rate, frames/s

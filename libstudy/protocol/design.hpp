@@ -93,8 +93,9 @@ struct Design {
   TimingSource timing = TimingSource::Settings;
   bool pairs =
       false;  ///< true: each trial shows two cells; without `standard` all unordered pairs of a group
-  /// Two-interval trials of format 3: each other cell is paired with the standard of its group. `pairs` is
-  /// true then. By factor: index of the standard's level; 0 for a between-subject factor, which is ignored.
+  /// The standard of two-interval trials of format 3, with which every other cell of its group is paired;
+  /// `pairs` is then true. By factor: index of the standard's level; 0 for a between-subject factor, which is
+  /// ignored.
   std::optional<std::vector<int>> standard;
   /// Adaptive trials of format 3; none: every cell, or pair, is shown `repetitions` times.
   std::optional<Procedure> procedure;

@@ -21,7 +21,7 @@ std::string format_method_claims(const MethodClaims& claims);
 
 /// The claims of protocols/plans/paper.toml, read once. base::Error if the file is missing or malformed.
 const MethodClaims& shipped_claims();
-/// The plan's own claims, or the shipped ones if it lists none.
+/// The plan's own claims, or shipped_claims() if the plan lists none.
 const MethodClaims& claims_in_force(const stats::AnalysisPlan& plan);
 
 /// The claims of one task (1 or 2).

@@ -13,7 +13,7 @@ namespace study {
 enum class AnswerKind {
   Scale,    ///< a row of scores, some with words below them (Likert)
   Choice,   ///< one of a list; every score has words
-  Number,   ///< typed, such as years of age
+  Number,   ///< a typed whole number, such as an age in years
   Text,     ///< typed text; exported only on request
   Vas,      ///< a point of a line with words at both ends (visual analogue scale)
   YesNo,    ///< a choice of 0 (no) and 1 (yes), which letter keys also select
@@ -93,8 +93,8 @@ std::vector<Question> ssq_questions(const std::string& language);
 /// "fms": the Fast Motion Sickness scale, 0 (no sickness) to 20 (severe): Keshavarz and Hecht 2011.
 Question fms_question(const std::string& language, std::optional<int> stop_at);
 
-/// Ids of two questions in a consent block whose answers (0 = no, 1 = yes) the program obeys: may gaze and
-/// head movement be recorded, and may public exports contain the data.
+/// Ids of two questions in a consent block on whose answers (0 = no, 1 = yes) the program acts: whether gaze
+/// and head movement may be recorded, and whether public exports may contain the data.
 inline constexpr const char* gaze_question = "gaze_kept";
 inline constexpr const char* sharing_question = "data_shared";
 

@@ -74,7 +74,7 @@ void read_reaction(const base::TomlTable& table, Question& question) {
     table.fail("personal", "= true keeps no response time", "remove it, or use another kind");
 }
 
-/// Checks the ends and the words of a line, on which a participant sees nothing else.
+/// Checks scale and anchors of a Vas, of which a participant sees only the line and the words at its ends.
 void check_line(const base::TomlTable& table, const Question& question) {
   if (question.scale_max > 1000) table.fail("scale", "ends above 1000", "use [0, 1000] at most");
   const auto& words = question.anchors;
@@ -189,7 +189,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   return question;
 }
 
-/// Why the program cannot obey the answers to a question; empty if it can.
+/// Why the program cannot act on the answers to gaze_question or sharing_question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "is in a block of kind " + block_kind_name(block);
   // The views of permissions in the database read only choices of 0 and 1.

@@ -64,8 +64,8 @@ std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);
-/// Checks that gaze_question and sharing_question are asked in a form that the program can obey. tables: the
-/// blocks' TOML tables.
+/// Checks that gaze_question and sharing_question are asked in a form on which the program can act. tables:
+/// the blocks' TOML tables.
 void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
 /// Checks that methods are in method_names() and that the words of n_star are numbers of particles.
 void check_design_names(const base::TomlTable& design);

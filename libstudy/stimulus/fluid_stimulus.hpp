@@ -148,7 +148,7 @@ struct StimulusChoice {
   /// Live fluid only: effects that replace the effects of the scene's file. None = the effects of the file.
   std::optional<std::vector<sim::Effect>> effects = {};
   std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< live fluid only: as `effects`
-  bool paint_temperature = false;  ///< paints temperatures over the water, where they are known
+  bool paint_temperature = false;  ///< paints temperatures over the water, if bake or scene have temperatures
   Viewing viewing;                 ///< ignored for a bake with pictures
   bool overview = false;           ///< live fluid only: uses the camera Scene::overview
   sim::RenderOptions render = {};  ///< live fluid only

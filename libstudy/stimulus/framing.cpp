@@ -113,7 +113,7 @@ std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view)
   std::vector<std::string> out;
   for (const auto& box : scene.visible) {
     const auto corners = corners_of(box);
-    // The box and the view frustum are convex, so the box is visible if all its corners are.
+    // The box and the view frustum are convex, so the box is visible if all its corners are visible.
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](const auto& corner) { return sees_point(view, corner); }))
       out.push_back(box.name);

@@ -34,8 +34,8 @@ std::atomic<bool> display_lost = false;
   throw base::Error("window", problem + (told ? std::string(": ") + told : std::string()), mend);
 }
 
-/// Keeps the program running when the connection to the X server breaks. Xlib would end it, unless an error
-/// handler and an error exit handler are set and both return.
+/// Keeps the program running when the connection to the X server breaks. Xlib would end the program,
+/// unless an error handler and an error exit handler are set and both return.
 void survive_a_lost_display() {
   display_lost = false;
   Display* display = glfwGetX11Display();

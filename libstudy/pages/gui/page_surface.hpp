@@ -20,13 +20,14 @@ struct PageEvent {
   int digit = -1;
   bool minus = false;
   bool stop = false;       ///< true: opens the stop dialog
-  bool pressed = false;    ///< true: a key, button or trigger went down; it answers a Reaction
+  bool pressed = false;    ///< true: a key, button or trigger went down, which answers a Reaction
   float lines = 0;         ///< number of lines to scroll down
   bool text_only = false;  ///< true: `lines` applies only to pages without questions
   /// Input device. While a field has the keyboard focus, a keyboard event is ignored unless it leaves the
   /// field or opens the stop dialog.
   AnswerInput input = AnswerInput::Keyboard;
-  std::string letters{};  ///< typed letters, lower case from a window; Dear ImGui also gets those of a window
+  /// Typed letters. A window reports them in lower case, and also passes them to Dear ImGui.
+  std::string letters{};
 };
 
 /// A surface that shows pages and reads input. All calls come from the session's thread.
@@ -61,8 +62,8 @@ class PageSurface {
   virtual std::optional<CutCause> take_unseen() = 0;
   /// True if the picture cannot be seen now.
   virtual bool unseen() const { return false; }
-  /// Call it when the session is over (true) or another one begins (false). After `true`, closing the surface
-  /// is no error.
+  /// Call it when the session is over (true) or another session begins (false). After `true`, closing the
+  /// surface is no error.
   virtual void set_over(bool /*over*/) {}
 };
 

@@ -25,8 +25,8 @@ bool looks_like(const Question& a, const Question& b) {
          a.scale_max == b.scale_max && a.anchors == b.anchors;
 }
 
-/// One past the last of the consecutive questions with the layout of question `first`; first + 1 if they are
-/// too few for a table.
+/// The index after the last of the consecutive questions with the layout of question `first`; first + 1 if
+/// these questions are too few for a table.
 std::size_t end_of_table(const PageState& state, std::size_t first) {
   std::size_t end = first + 1;
   while (end < state.size() && looks_like(state.question(first), state.question(end))) ++end;

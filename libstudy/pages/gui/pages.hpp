@@ -33,14 +33,15 @@ class Pages {
   void wait(const PauseWords& words, std::int64_t until_ns, const Check& check);
   /// Shows the words on black, without the time left, until `over` returns true.
   void show_words(const PauseWords& words, const std::function<bool()>& over, const Check& check);
-  /// Call it when the session is over (true) or another one begins (false). After `true`, requests to stop
-  /// are ignored.
+  /// Call it when the session is over (true) or another session begins (false). After `true`, requests to
+  /// stop are ignored.
   void set_over(bool over);
 
-  /// The session polls this. Returns the request of `others`, or the end of the session if the participant
-  /// stopped. A request to stop during a stimulus opens the stop dialog here; afterwards the session ends, or
-  /// the trial is cut and shown again. A trial is also cut if its stimulus could not be seen; the next call
-  /// then waits until the surface is visible, and the trial is shown again.
+  /// The session calls this function repeatedly (SessionHooks::request). Returns the request of `others`, or
+  /// the end of the session if the participant stopped. A request to stop during a stimulus opens the stop
+  /// dialog here; afterwards the session ends, or the trial is cut and shown again. A trial is also cut if
+  /// its stimulus could not be seen; the next call then waits until the surface is visible, and the trial is
+  /// shown again.
   Request request(const std::function<Request()>& others);
 
   const DeskWords& words() const { return words_; }
@@ -54,7 +55,7 @@ class Pages {
   /// Opens the stop dialog; true if the participant wants to stop.
   bool ask_to_stop(const Check& check);
   /// Shows a choice of two answers above other pages; true if the first was chosen. None: the participant
-  /// closed it with another request to stop.
+  /// closed the choice with another request to stop.
   std::optional<bool> ask_first(const DeskChoice& choice, const char* layer, const Check& check);
   /// Waits for wait_s and processes input; true if the stop dialog was opened.
   bool look_up(double wait_s, const Check& check);

@@ -272,7 +272,7 @@ void HeadsetSurface::end() {
 }
 
 void HeadsetSurface::show() {
-  if (!page_) display_.clear();  // else the last picture would stay on, frozen, behind the page
+  if (!page_) display_.clear();  // otherwise the last picture would stay frozen behind the page
   if (!page_ || page_world_ != head_world_ || is_left_behind(*page_, head_)) {
     page_ = place_page(head_);
     page_world_ = head_world_;

@@ -24,8 +24,9 @@ struct BakeOrder {
 };
 
 /// The header of the bake, without the fields that are known only after baking: back end, renderer, number of
-/// particles and radii. base::Error for an unreadable scene, unknown words, free obstacles without pictures,
-/// an overlay in a scene without heat, and temporal acceleration without a frame rate for tau.
+/// particles and radii. base::Error for an unreadable scene, unknown words, a scene with free obstacles in a
+/// bake without pictures, an overlay in a scene without heat, and temporal acceleration without a frame rate
+/// for tau.
 sim::BakeHeader header_of(const BakeOrder& order);
 
 /// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,

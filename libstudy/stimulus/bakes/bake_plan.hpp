@@ -26,7 +26,7 @@ struct PlannedStimulus {
 
 /// The stimuli in the order of the protocol's cells. A stimulus cannot be baked if its timing is native, if
 /// its levels follow the gaze and the protocol lacks gaze = "fixation", or if it has more frames than a bake
-/// can store. All others can. base::Error: unknown method or n_*.
+/// can store. All other stimuli can be baked. base::Error: unknown method or n_*.
 std::vector<PlannedStimulus> plan_bakes(const Protocol& protocol);
 
 /// Settings of a session's stimuli and picture.
