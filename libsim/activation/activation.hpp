@@ -11,7 +11,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Settings of Algorithm 3 in the form that kernels use; sim::Readings documents each.
+/// Settings of ViP-Fluid's Algorithm 3 in the form that kernels use; sim::Readings documents each.
 struct ActivationRules {
   explicit ActivationRules(const Readings& readings = {})
       : relative_level_change(readings.dimensionless_levels),
@@ -27,8 +27,8 @@ struct ActivationRules {
         speed_floor(static_cast<float>(readings.speed_floor)) {}
 
   bool relative_level_change;
-  /// Normalise F_pim between its 1st and 99th percentile, which follow each frame's percentiles by a tenth of
-  /// the difference; false: between the frame's minimum and maximum.
+  /// Normalise the importance F_pim between its 1st and 99th percentile, which follow each frame's
+  /// percentiles by a tenth of the difference; false: between the frame's minimum and maximum.
   bool robust_range;
   bool inherit_change;
   bool pressed;  ///< gravity and coarse pressure move unsolved particles too; only with inherit_change
@@ -44,8 +44,8 @@ struct ActivationRules {
   float speed_floor;  ///< epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2
 };
 
-/// Bit fields of Column::Rest. This one counts inactive frames and the solved frames after them
-/// (Choose::count_after).
+/// Bit fields of Column::Rest: the bits of a counter of inactive frames and of the solved frames after them
+/// (Choose::count_after), and two flags.
 constexpr std::uint8_t rest_count_mask = 0x0f;
 constexpr std::uint8_t rest_nowhere = 0x40;  ///< flag: the velocity grid has no velocity at the particle
 /// flag: when it was last solved, the particle's density was below sparse_density, or below surface_density
@@ -73,17 +73,17 @@ constexpr int sum_of_solved = 0;
 /// index of the same sum over the unsolved particles; only with ActivationRules::pressed
 constexpr int sum_of_resting = 1;
 /// Indices of sums in Activation::after alone, by present position: sum_of_grid on the cells of
-/// Activation::grid (solved particles; in full frames all particles), sum_of_near on those of
+/// Activation::grid (solved particles; all particles in frames that solve all), sum_of_near on those of
 /// Activation::near (solved particles).
 constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
 /// State of temporal acceleration. The velocities and energies of both grids, the range, the slots of the
 /// last substep, and the flags columns_set and all_marked last from frame to frame. Rules, beta, seed and
-/// frame are inputs. The rest is rebuilt in each frame that needs it.
+/// frame are inputs. All other members are rebuilt in each frame that needs them.
 struct Activation {
   ActivationRules rules;
-  float beta = 1;  ///< lowest probability of being solved; 1 = all particles are solved, whatever F_pim
+  float beta = 1;  ///< lowest probability that a particle is solved; 1 = all particles are solved
   std::uint32_t seed = 1;
   std::uint32_t frame = 0;  ///< frames before the present one; part of the key of the random numbers
 
@@ -91,13 +91,13 @@ struct Activation {
   /// Mean velocities on the cells from which unsolved particles inherit; finer than the cells of V and E.
   VelocityGrid near;
   PercentileRange range;
-  Array<float> importance;   ///< F_pim, Eq. 12
-  Array<float> probability;  ///< p_i, Algorithm 3 line 8
+  Array<float> importance;   ///< F_pim, ViP-Fluid Eq. 12
+  Array<float> probability;  ///< p_i that particle i is solved, ViP-Fluid Algorithm 3 line 8
   bool columns_set = false;  ///< true once the columns Active and Rest have been written
   bool all_marked = false;   ///< true while Active is 1 for all particles
 
-  // Inputs of Eq. 13 and 14 per cell: differences of V between cells along x, y and z, differences of V
-  // between levels, V summed over levels, differences of E between cells along x, y and z.
+  // Inputs of ViP-Fluid's Eq. 13 and 14 per cell: differences of V between cells along x, y and z,
+  // differences of V between levels, V summed over levels, differences of E between cells along x, y and z.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
   CellMomentum before, after;  ///< sums before and after the solve; see sum_of_solved
   Array<Vec4> change;          ///< velocity change that unsolved particles inherit
@@ -105,9 +105,9 @@ struct Activation {
   Array<int> ranks, slots, slot_of;
   Scanner scanner;
 
-  /// Lists the active particles for the passes of a substep. Active particles also read the values of the
-  /// others: for those it sets lambda to 0, the density to rho_0 and PredictedNext to Predicted. slot_of is
-  /// the inverse of slots.
+  /// Fills `slots` with the active particles first, for the passes of a substep; slot_of is the inverse of
+  /// slots. Active particles also read the values of inactive neighbours, so this sets lambda = 0, density =
+  /// rho_0 and PredictedNext = Predicted for all inactive particles.
   void list_active(ActiveListView particles);
   std::size_t bytes() const;
 };

@@ -8,8 +8,8 @@ constexpr float range_share = 0.1f;  ///< per frame, the range moves by this sha
 
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
-/// Inputs of Eq. 13 and 14 in one cell and level: differences of the mean velocity V between cells and
-/// between levels.
+/// Inputs of ViP-Fluid's Eq. 13 and 14 in one cell and level: differences of the mean velocity V between
+/// cells and between levels.
 struct VelocitySlopes {
   const Vec4* velocity;
   CellBlock block;
@@ -127,8 +127,8 @@ struct Importance {
     counter.add(i, f);
   }
 
-  /// F_pim of particle i, Eq. 12; 0 if it is not finite, or if the grid has no velocity at the particle. Sets
-  /// the flag rest_nowhere in the second case, and clears it otherwise.
+  /// F_pim of particle i, ViP-Fluid Eq. 12; 0 if it is not finite, or if the grid has no velocity at the
+  /// particle. Sets the flag rest_nowhere in the second case, and clears it otherwise.
   SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();
@@ -142,7 +142,8 @@ struct Importance {
     return std::isfinite(f) ? f : 0;
   }
 
-  /// f_in, Eq. 13.
+  /// f_in, ViP-Fluid Eq. 13: the gradient of the level's mean velocity, divided by the size of this velocity,
+  /// plus the same gradient divided by the size of the sum over the levels.
   SIM_FN float within(int offset, const CellCorners& corners, Vec4 v) const {
     const Vec3 x = xyz(sample(slope_x, offset, corners));
     const Vec3 y = xyz(sample(slope_y, offset, corners));
@@ -152,7 +153,8 @@ struct Importance {
     return gradient / (length(xyz(v)) + speed_floor) + gradient / (length(all) + speed_floor);
   }
 
-  /// f_cr, Eq. 14.
+  /// f_cr, ViP-Fluid Eq. 14: the difference of the mean velocity between levels, plus the relative difference
+  /// of the kinetic energy between cells.
   SIM_FN float across(int offset, const CellCorners& corners, Vec4 v) const {
     float by_level = length(xyz(sample(across_levels, offset, corners)));
     if (relative_level_change) by_level /= length(xyz(v)) + speed_floor;

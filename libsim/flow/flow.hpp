@@ -13,8 +13,8 @@
 namespace sim::SIM_BACKEND {
 
 /// Heat that entered and left the water since the run began, divided by the water's specific heat: mass in
-/// m_* times kelvin above the reference, as integer multiples of `unit`, so that the order of the threads
-/// does not matter. Negative values in two's complement.
+/// m_* (the mass of a particle of level 0) times kelvin above the reference. Integer multiples of `unit`, so
+/// that the order of the threads does not matter; negative values in two's complement.
 struct HeatLedger {
   std::uint64_t poured;   ///< with the water that nozzles added
   std::uint64_t taken;    ///< with the water that nozzles took from the corners
@@ -102,7 +102,7 @@ struct Jets {
   /// Per nozzle: the part of the jet that was due before this frame, including layers that could not be
   /// poured.
   std::vector<Poured> before;
-  double finest_spacing_m = 0;  ///< d_*
+  double finest_spacing_m = 0;  ///< d_*, the spacing of particles of level 0
   double frame_dt_s = 0;        ///< > 0
   Corners corners;
   /// True if the level of new layers is the median target of the particles near the mouth.
@@ -113,8 +113,8 @@ struct Jets {
   CornerColumns columns;
   Exchange exchange;
   Array<int> mass_by_target;   ///< mass of the particles near a mouth by target level, m_*
-  std::int64_t reservoir = 0;  ///< taken from the corners and not yet poured, in m_*
-  std::int64_t poured = 0;     ///< since the run began, in m_*
+  std::int64_t reservoir = 0;  ///< mass taken from the corners and not yet poured, in m_*
+  std::int64_t poured = 0;     ///< mass poured since the run began, in m_*
   std::int64_t made = 0;       ///< particles added by pouring since the run began
   std::int64_t taken = 0;      ///< particles taken from the corners since the run began
   /// Layers that were due and not poured: the corners had too little mass, or the capacity was reached.

@@ -12,8 +12,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Rules of Algorithms 1 and 2 in the form that kernels use. sim::Readings explains the members that are
-/// copied from it.
+/// Rules of ViP-Fluid's Algorithms 1 and 2 in the form that kernels use. sim::Readings explains the members
+/// that are copied from it.
 struct LevelRules {
   explicit LevelRules(const Readings& readings = {}, int levels = most_levels)
       : coarsest(levels - 1),
@@ -30,7 +30,7 @@ struct LevelRules {
         kick_filter(static_cast<float>(readings.kick_filter)),
         calm_viscosity(static_cast<float>(readings.calm_viscosity)) {}
 
-  int coarsest;  ///< N - 1
+  int coarsest;  ///< N - 1, with N the number of levels
   bool graded;
   float split_offset[3];
   float split_share;
@@ -38,7 +38,8 @@ struct LevelRules {
   float merge_reach;
   float merge_overlap;
   bool merge_keeps_steps;
-  /// A particle may become coarser only if N (1 - s) of Eq. 9 exceeds its level + 1 by this much, in levels.
+  /// A particle of level l may become coarser only if N (1 - s) of ViP-Fluid Eq. 9 is at least l + 1 plus
+  /// this number; s is the particle's saliency.
   float dead_band;
   float kick_filter;
   float calm_viscosity;
@@ -75,7 +76,8 @@ struct LevelRules {
   int weightless_partings = 10;
 };
 
-/// Event counts on the device since the simulation was made.
+/// Event counts on the device since the simulation was made. A particle-turn is one particle in one update of
+/// the levels.
 struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
   std::uint64_t born;            ///< particles added by splits: 2^k - 1 per split

@@ -6,9 +6,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// State of a particle while splits are chosen. keeps: it does not split. paused: the last frame did not
-/// solve it (Alg. 3 line 16), so it may not split. wants: it wants to split, not yet decided. splits: it is
-/// chosen.
+/// State of a particle while splits are chosen. keeps: it does not split. paused: it may not split, because
+/// the last frame did not solve it (ViP-Fluid, Alg. 3 line 16). wants: it wants to split, not yet decided.
+/// splits: it is chosen.
 enum Status : std::uint8_t { keeps, paused, wants, splits };
 
 /// Priority of a split: first by k, the number of levels down to the target, because particles with a large k
@@ -72,8 +72,8 @@ struct ChooseApart {
 
 constexpr int rounds = 3;
 
-/// Finds a rotation with which all 2^k children lie inside the walls and outside obstacles, for the wanted k
-/// or, if there is none, for a smaller k.
+/// Finds a rotation with which all 2^k children of a split lie inside the walls and outside obstacles. k is
+/// the number of levels from the particle down to its target or, if no rotation fits, a smaller number.
 template <class Boundary>
 struct FitChildren {
   const Vec4* position;

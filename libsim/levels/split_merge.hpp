@@ -1,6 +1,6 @@
 #pragma once
-/// The parts of the pass that splits and merges. The children of a split (Algorithm 1) lie on 2^(k-1)
-/// diagonals of a randomly rotated cube.
+/// The parts of the pass that splits and merges. The 2^k children of a split (ViP-Fluid, Algorithm 1) lie on
+/// 2^(k-1) diagonals of a randomly rotated cube.
 
 #include "libsim/levels/level_state.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -91,8 +91,8 @@ SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const Part
   return team.sum(count) >= least * (1 - walls.missing(xyz(self), self.w, gradient));
 }
 
-/// True if position x, between two particles, is outside all obstacles. Without obstacles it always is,
-/// because no wall lies between two particles.
+/// True if position x, between two particles, is outside all obstacles. In a scene without obstacles always
+/// true: walls need no test, because no wall lies between two particles.
 SIM_FN bool free_of_bodies(const Walls&, Vec3) { return true; }
 SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest_body(x) > 0; }
 

@@ -137,8 +137,8 @@ LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
           .first = 0};
 }
 
-/// Height of the grid, in heights of the domain, because water splashes above the rim. Higher particles share
-/// the uppermost cells.
+/// Height of the grid, as a multiple of the domain's height; above 1, because water splashes above the rim.
+/// Particles above the grid share the uppermost cells.
 constexpr float headroom = 1.5f;
 
 }  // namespace

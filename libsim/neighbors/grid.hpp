@@ -158,7 +158,7 @@ class Grid {
   void find_met(Particles& particles);
 
   Scanner scanner_;
-  CellTable shape_{};  ///< all but the array pointers
+  CellTable shape_{};  ///< the table without its array pointers, which cells() adds
   Array<int> begin_, cell_of_, placed_, order_;
   /// 1 = the block contains particles of the level; the entries of a block's levels are adjacent
   Array<int> present_;

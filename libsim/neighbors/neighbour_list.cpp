@@ -31,8 +31,8 @@ struct ListNeighbours {
   std::uint64_t build;  ///< unique per build
 
 #ifdef SIM_CUDA
-  /// Threads per particle, as measured on an H200. With several levels a particle reads more lines of cells,
-  /// so sharing them is faster up to larger n.
+  /// Threads per particle for n particles; the limits were measured on an H200. With several levels a
+  /// particle reads more lines of cells, so several threads per particle are faster up to a larger n.
   int lanes(int n) const { return n < 20'000 ? 8 : n < (cells.levels > 1 ? 300'000 : 110'000) ? 4 : 1; }
 
   /// Bit mask of the near particles among up to 32 from index `begin` on.

@@ -78,9 +78,8 @@ class NeighbourList {
   static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the same order in every run; on the
-  /// CPU this is the grid's order. Lists beyond the
-  /// capacity go to the store; neighbours that do not fit there either are dropped and reported to the
-  /// witness.
+  /// CPU this is the grid's order. Lists beyond the capacity go to the store; neighbours that do not fit
+  /// there either are dropped and reported to the witness.
   void build(PredictedView particles, const Grid& grid, Witness witness);
   /// Lists the neighbours of the active particles only, one list per slot.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
@@ -133,8 +132,8 @@ class NeighbourList {
   /// 55 in SingleDam.
   static constexpr int usual_capacity = 56;
   /// Entries per list for mixed levels. A coarse particle among the finest has 113 neighbours within the
-  /// support and some 150 within the margin. The longest list of the paper's three scenes had 108 (Ours,
-  /// n_* = 32k).
+  /// support and some 150 within the margin. The longest list of ViP-Fluid's three scenes had 108 (method
+  /// Ours, n_* = 32k).
 #ifdef SIM_CUDA
   static constexpr int mixed_capacity = 128;
 #else

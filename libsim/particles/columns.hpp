@@ -18,7 +18,7 @@ struct SaliencyParts {
 enum class Life {
   Core,    ///< values last as long as the particle; the column exists in every run
   Kept,    ///< values last as long as the particle; the column exists if a stage declares it
-  Scratch  ///< within a substep
+  Scratch  ///< values last at most until the substep's end
 };
 
 /// Rule for a column's values when a split or a merge makes particles. MassMean, Sum, Max and Reset need no
@@ -189,7 +189,7 @@ struct RuledColumns {
   Descent rule[ruled_count<T>()];
   int count;
 
-  /// Particle i, a copy of its parent, becomes one of `children` of equal mass.
+  /// Sets the values of particle i, so far a copy of its parent, which splits into `children` equal masses.
   SIM_FN void split(int i, int children) const {
     for (int k = 0; k < count; ++k) {
       if (rule[k] == Descent::Reset) values[k][i] = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid bodies moved by water and gravity. Masses are in m_*.
+/// Rigid bodies moved by water and gravity. Masses are in m_*, the mass of a particle of level 0.
 
 #include "libsim/particles/particles.hpp"
 #include "libsim/particles/solids.hpp"
@@ -30,10 +30,11 @@ struct BodyTurn {
 /// not free, each BodyTurn contains momentum, m_* m/s, and its moment, m_* m2/s, instead.
 struct BodyRow {
   BodyTurn gained, residual, direction, bent;
-  Momentum push, moment;  ///< received from particles in one pass, in the unit of BodyRows
+  /// momentum, and its moment about the centre, received from particles in one pass, in BodyRows::unit
+  Momentum push, moment;
 };
 
-/// q rotated by a rotation vector in world axes, rad.
+/// The quaternion q, rotated by the rotation vector `way` in world axes, rad.
 SIM_FN Vec4 turned_by(Vec4 q, Vec3 way) {
   const float angle = length(way);
   const float s = angle > 1e-6f ? sinf(0.5f * angle) / angle : 0.5f;
@@ -126,7 +127,7 @@ struct WallContact {
 /// previous substep, then limits the body's speed.
 struct BodyDrive {
   Guards* guards;
-  Vec3 lift;  ///< Fall::lift()
+  Vec3 lift;  ///< minus the acceleration of gravity, m/s2
   float dt, most_speed;
   bool first;  ///< first substep of the frame
 

@@ -25,7 +25,7 @@ struct ListedContact {
 struct Meeting {
   Body* bodies;  ///< bodies that are not free are already at their positions of the substep's end
   FreeBody* free;
-  const MeshGrid* meshes;  ///< as in Solids
+  const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
   const float* friction;   ///< friction coefficient of each body
   Vec3* by_others;         ///< momentum that each body received from other bodies in this frame, m_* m/s
   Walls walls;
@@ -62,14 +62,14 @@ struct Meeting {
     std::size_t bytes = 0;
     Body* start;      ///< bodies at the beginning of the substep
     BodyRate* rates;  ///< the bodies' velocities, at first without contacts
-    BodyRate* along;  ///< as in ContactRows
+    BodyRate* along;  ///< ContactRows::along
     float* speeds;    ///< speed of the fastest point of each body, m/s
     int* found;     ///< number of contacts per group; for two bodies first a flag: 1 = a contact is possible
     Contact* felt;  ///< per pair of bodies: one contact for each tested point of either body
     Contact* picked;  ///< selected contacts, up to most_contacts per group
     ListedContact* list;
     int* listed;                 ///< number of listed contacts
-    int *touches, *touch_begin;  ///< as in ContactRows
+    int *touches, *touch_begin;  ///< the listed contacts of each body, see ContactRows
     ContactProgress* progress;
     int* deep;        ///< 1 if some penetration exceeds slop
     float* friction;  ///< coefficient of each listed contact
@@ -170,7 +170,8 @@ struct Meeting {
       return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
     }
 
-    /// Sets `ahead`. Separating contacts keep their gap, because other bodies may stop the separation.
+    /// Sets `ahead`: the gap minus the distance by which the surfaces approach in the substep. For separating
+    /// surfaces this distance counts as 0, because other bodies may stop the separation.
     SIM_FN void look_ahead(Contact& it, Vec3 speed) const {
       it.ahead = it.gap + m.drive.dt * at_most(dot(it.normal, speed), 0.0f);
     }

@@ -7,7 +7,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Sum of mass (in m_*) times a vector, in units of 2^-Bits.
+/// Sum of mass times a vector, in units of 2^-Bits. m_* is the mass of a particle of level 0.
 template <int Bits>
 struct MassSum {
   std::uint64_t x, y, z;

@@ -49,7 +49,7 @@ struct Witness {
   }
 };
 
-/// Support radius of each mass level, m: cbrt(2^level) h_* (Eq. 10).
+/// Support radius of each mass level, m: cbrt(2^level) h_*, with h_* that of level 0 (ViP-Fluid, Eq. 10).
 struct LevelSupports {
   static constexpr int most = 4;
   float h[most];
@@ -190,9 +190,9 @@ class ColumnView {
 template <Column... C>
 using Reads = ColumnView<columns(C...), ColumnSet{}>;
 
-/// Lists in `ids` the unused ids below the capacity, in ascending order; ids of particles beyond the capacity
-/// are ignored. `gone`: flags of particles whose ids count as unused; nullptr: none. `flags` and `sums` are
-/// scratch memory. The three arrays are resized to the capacity.
+/// Lists in `ids` the unused ids below the capacity, in ascending order. Particles whose id is not below the
+/// capacity are ignored. `gone`: flags of particles whose ids count as unused; nullptr: none. `flags` and
+/// `sums` are scratch memory. The three arrays are resized to the capacity.
 void list_free_ids(Reads<Column::Id> particles, const std::uint8_t* gone, Scanner& scanner, Array<int>& flags,
                    Array<int>& sums, Array<int>& ids);
 

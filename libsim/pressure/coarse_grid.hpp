@@ -27,8 +27,8 @@ struct PressureFrame {
   SIM_FN Vec3 in_metres(Vec3 cells) const {
     return low + Vec3{edge.x * cells.x, edge.y * cells.y, edge.z * cells.z};
   }
-  /// Floor area of a cell, m2: its volume divided by its vertical edge. The sources C V and the conductances
-  /// of faces are both divided by this edge.
+  /// Floor area of a cell, m2: its volume V divided by its vertical edge. Both the cells' sources C V, with C
+  /// = rho / rho_0 - 1, and the conductances of faces are divided by this edge.
   SIM_FN float floor_area() const { return edge.x * edge.z; }
   /// Conductance of the faces across x, y and z: area divided by distance and by the vertical edge.
   Vec3 conductance() const { return {edge.z / edge.x, floor_area() / (edge.y * edge.y), edge.x / edge.z}; }
@@ -90,8 +90,8 @@ struct CellWater {
 
   static constexpr float fixed_point = 1 << 20;
   /// A cell whose particles are on average below the rest density by more than this share contains a surface,
-  /// and so q = 0 in it. If only the sign of q decided, the set of surface cells would oscillate between
-  /// cycles.
+  /// and so the coarse pressure q is 0 in the cell. If only the sign of q decided, the set of surface cells
+  /// would oscillate between cycles.
   static constexpr float surface_deficit = 0.05f;
 
   SIM_FN static float mean_excess(const CellSum& sum) {

@@ -5,8 +5,9 @@
 
 namespace sim::SIM_BACKEND {
 
-/// -grad q, interpolated from the faces that touch fluid, like the velocity of a MAC grid. At a position in
-/// front of an opening the outside counts as air, even if only a small part of the cell's face is open.
+/// -grad q of the coarse pressure q, interpolated from the faces that touch fluid, like the velocity of a MAC
+/// grid. At a position in front of an opening the outside counts as air, even if only a small part of the
+/// cell's face is open.
 struct CoarseSlope {
   PressureFrame frame;
   GridView grid;

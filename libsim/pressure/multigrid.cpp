@@ -94,7 +94,9 @@ struct SmallGrids {
   static constexpr int most = 16;
   struct Grid {
     CellBlock block;
-    int scale, begin;  ///< edge in finest cells; index of its first cell
+    /// scale: edge of a cell, in finest cells. begin: index of the grid's first cell in the arrays that all
+    /// small grids share.
+    int scale, begin;
   };
   GridView outside;  ///< the first small grid, in global memory
   Grid grid[most];

@@ -9,8 +9,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Computes Extremes over all particles. Each lane reads particles at a fixed stride, so that adjacent lanes
-/// of a warp read adjacent memory. A team first sums over its lanes, because all teams add to the same
-/// totals.
+/// of a warp read adjacent memory. A team first sums over its lanes, so that it needs only one atomic
+/// operation per total.
 struct Gather {
   const Vec4* velocity;
   const float* density;
@@ -78,8 +78,8 @@ struct FastestBody {
 struct Tally {
   const Guards* guards;
   const NeighbourList::Need* lists;
-  /// Number of solved particles, counted before particles left through outlets: the last of their prefix
-  /// sums. nullptr if all were solved.
+  /// Points to the last prefix sum of the flags of solved particles: their number before particles left
+  /// through outlets. nullptr if all were solved.
   const int* active;
   const std::uint8_t* level_of;
   int n;
@@ -113,8 +113,8 @@ struct Tally {
   }
 };
 
-/// Position of the particle with this id, m; none if it is not finite or the id is unknown. Costs a
-/// read-back, so it is called only in the first frame of a run that has trouble.
+/// Position of the particle with this id, m; none if the position is not finite or the id is unknown. Copies
+/// all ids to the host, which is slow; a run calls this once at most, in its first frame with trouble.
 std::optional<Vec3d> place_of(const Particles& particles, int id) {
   const std::vector<int> ids = particles.all().id.to_host();
   const auto found = std::find(ids.begin(), ids.end(), id);

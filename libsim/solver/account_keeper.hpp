@@ -11,10 +11,11 @@ namespace sim::SIM_BACKEND {
 
 /// Sums and maxima over the particles.
 struct Extremes {
-  int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s; patterns of floats >= 0 have the
-                     ///< order of the floats
+  /// bit pattern of the largest speed as a float, m/s. An integer maximum of bit patterns finds it, because
+  /// the patterns of floats >= 0 have the same order as the floats.
+  int fastest_bits;
   /// sum over the solved particles of mass times (rho / rho_0 - 1), the bracket limited to 0 .. 1, with rho
-  /// of the last projection; in excess_unit, m_*
+  /// of the last projection; in units of excess_unit times m_*, the mass of a particle of level 0
   std::uint64_t excess;
   std::uint64_t mass;  ///< mass of the solved particles, in m_*
   /// number of particles whose velocity is not finite, plus the number of solved particles that are too dense

@@ -1,4 +1,4 @@
-/// Derives the settings of each part of the solver from scene, method and readings.
+/// Derives the settings of each part of the solver from the scene and the options.
 
 #include <algorithm>
 #include <cmath>
@@ -317,7 +317,7 @@ Opening opening_of(const Outlet& outlet) {
 Walls walls_of(const Scene& scene, bool settling) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
-  if (settling && scene.gate) {  // check_extent refuses a gate with several blocks
+  if (settling && scene.gate) {  // there is one block: check_extent refuses a gate with several
     const Fall fall(0, vector_of(scene.gravity_m_s2.up()));
     const std::array<float, 3> axis{fall.axis().x, fall.axis().y, fall.axis().z};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -16,13 +16,15 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
 
 /// Simulated time of a frame, s.
 double frame_dt_of(const Scene& scene, const SimulationOptions& options);
-/// Minimum number of substeps per frame: from the scene or the options, and from its effects. base::Error if
-/// the options allow too few for an effect, or an effect needs too many.
+/// Minimum number of substeps per frame: the number in the options or, if that is 0, the scene's, raised to
+/// what the scene's effects need. base::Error if the options set fewer than an effect needs, or if an effect
+/// needs more than 1000.
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
 /// substeps_needed for those effects of the scene that act on its water.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
-/// Text that lists the effects `listed`, then the longest substep and the scale-dependent numbers of the
-/// effects of `scene`, which must be those that act. Empty without effects and obstacles.
+/// Text that lists the effects `listed`, then the longest substep that the effects of `scene` allow, and the
+/// scene's characteristic scales and Reynolds, Weber and Bond numbers. `scene` must contain only effects that
+/// act on its water (acting_scene). Empty text without effects and obstacles.
 std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
                              const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
@@ -35,8 +37,8 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// g + Omega^2 R, m/s2: the largest acceleration of the start by gravity and the central force; R as in
 /// fall_speed.
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
-/// Rule for the number of substeps; `fastest` in m/s is the largest speed of the start, the nozzles and the
-/// obstacles.
+/// Rule for the number of substeps. `fastest`: largest speed of the start, the nozzles and the obstacles,
+/// m/s. `acceleration`: largest acceleration by gravity and the central force, m/s2.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
 /// Speed limit, m/s: three times fall_speed, plus three times the capillary speed, plus the squeeze of
@@ -46,7 +48,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
 /// and with a speed below 0.001 d per frame, the limit is two supports of the finest particles per substep.
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters);
-/// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
+/// Largest speed of the particles at the start, of water from nozzles, and of the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// Requirements on the schedule of a run, from scene, method and options. `levels`: finest and coarsest level
 /// of the water.
@@ -121,11 +123,12 @@ void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);
 /// state.parameters; afterwards the walls are the tank's. base::Error if a particle was not finite or far
 /// outside the tank.
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);
-/// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
-/// is below 0.2 %. Velocities do not change.
+/// Projects the positions onto the density constraint, at most `most` times, until the mass-weighted mean of
+/// max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities do not change.
 RelaxedStart relax_start(FluidState& state, int most);
-/// Computes V^n and E^n of temporal acceleration from the present particles, as the end of a frame does. Call
-/// it after relax_start, which measures the densities that decide which particles count as spray.
+/// Computes the grids of temporal acceleration, mean velocity V^n and kinetic energy E^n, from the present
+/// particles, as the end of a frame does. Call it after relax_start, which measures the densities that decide
+/// which particles count as spray.
 void start_velocity_grid(FluidState& state);
 /// relax_start and, with temporal acceleration, start_velocity_grid, for a start in the middle of a run.
 /// Guard counts of this phase are discarded.

@@ -40,7 +40,7 @@ void keep_fluid(Archive& archive, FluidState& state) {
   if (state.obstacles.exists()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
   if (state.obstacles.meet()) archive(state.obstacles.by_others);
-  // Only methods with levels use neighbour lists before particles move.
+  // Only methods with levels use neighbour lists before particles move, so other methods do not save them.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);
   if constexpr (Archive::reads) state.lists_hold = with_lists;

@@ -14,7 +14,7 @@ Vec3d vector(Vec3 v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-/// Value of m_*, kg.
+/// m_*, the mass of a particle of level 0, kg.
 double mass_unit(const FluidState& state) {
   const auto edge = static_cast<double>(state.finest_support) / 2;
   return static_cast<double>(state.parameters.rest_density) * edge * edge * edge;

@@ -9,7 +9,7 @@
 
 namespace sim::SIM_BACKEND {
 
-constexpr float radius_per_support = 0.25f;  ///< h = 4 r
+constexpr float radius_per_support = 0.25f;  ///< a particle of support h has the radius h / 4
 
 /// The values of `field` in the particles' order. If the solver has no such column: 0, or 1 for Active.
 std::vector<float> field_of(const Particles& particles, ParticleField field);

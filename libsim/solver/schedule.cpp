@@ -73,7 +73,7 @@ bool may_pass(const Stage& later, const Stage& pass) {
   return !pass.writes.meets(later.reads | later.writes) && !later.writes.meets(pass.reads);
 }
 
-/// Two passes that may share a loop.
+/// Indices of two passes of a phase that can share a loop over neighbours, and the stage that replaces both.
 struct Sharing {
   std::size_t first, second;
   Stage stage;
@@ -142,7 +142,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   Schedule out;
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
-  // Columns that are set when a particle is created.
+  // The columns that have values before the first pass, because they are set when a particle is created.
   ColumnSet written = out.columns | columns(Column::Target, Column::History) | ruled_columns();
   for (const auto& stage : stages) {
     const std::string reason = reason_for(stage, demand);

@@ -1,5 +1,6 @@
 #pragma once
-/// From demand to schedule: selects the required stages in their fixed order, and checks them.
+/// Turns a Demand into a Schedule: selects the required stages in their fixed order, and checks that each
+/// column is written before it is read.
 
 #include <string>
 #include <vector>
@@ -17,17 +18,18 @@ struct Schedule {
 };
 
 /// Drops stages that are not required. The order changes only if two passes of one phase can share one of
-/// `loops`: the later one then runs together with the earlier one. This needs that no pass from the earlier
-/// one on accesses a column that the later one writes, or writes a column that it reads. base::Error if a
-/// pass reads a column that no earlier pass has written; the error names the pass and the column.
+/// `loops`: the later pass then runs together with the earlier one. Two passes can share a loop only if
+/// neither the earlier pass nor any pass between them accesses a column that the later pass writes, or writes
+/// a column that the later pass reads. base::Error if a pass reads a column that no earlier pass has written;
+/// the error names the pass and the column.
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages(),
                           const std::vector<SharedLoop>& loops = shared_loops());
 
 /// The passes in their order, with their last measured times.
 std::vector<StageTime> stage_times(const Schedule& schedule, const PassClock& clock);
 
-/// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes),
-/// then the frame's end.
+/// Runs the passes of one frame: those of the frame's start; in each substep the substep's passes, in each
+/// iteration the iteration's passes, then the passes of the substep's end; last those of the frame's end.
 void run_frame(const Schedule& schedule, FluidState& state);
 
 }  // namespace sim::SIM_BACKEND

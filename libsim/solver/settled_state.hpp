@@ -23,8 +23,8 @@ std::string settled_key(const Scene& scene, const SimulationOptions& options);
 /// finite, ids or levels out of range), which is not an error.
 std::optional<std::vector<ParticleState>> read_settled(const std::filesystem::path& folder,
                                                        const std::string& key);
-/// Stores a state by rename, and deletes states that were not read for 30 days. An unwritable folder is not
-/// an error: the next run settles again.
+/// Stores a state atomically, and deletes states that were neither written nor read in the last 30 days. An
+/// unwritable folder is not an error: the next run settles again.
 void write_settled(const std::filesystem::path& folder, const std::string& key,
                    const std::vector<ParticleState>& state);
 

@@ -209,7 +209,8 @@ void lay_foam_cells(FluidState& state, const Scene& scene) {
 void check_foam(const FluidState& state, const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
   const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
   const Vec3d& tank = scene.tank_size_m;
-  // Upper bound: approach and crest both have their full potential, everywhere in a full tank.
+  // Upper bound of the foam particles per frame: the tank is full of water, and everywhere the potentials of
+  // approach and crest are at their maximum.
   const auto crest = static_cast<double>(e[EffectOption::FoamCrestWeight] * foam_length(state, e, scene) /
                                          state.supports.h[0]);
   const double most = (1 + 2 * crest) * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] *
@@ -285,7 +286,7 @@ RelaxedStart relax_start(FluidState& state, int most) {
   if (p.size() == 0) return out;
   Array<float> excess(static_cast<std::size_t>(p.size()));
   Array<float> mass(static_cast<std::size_t>(p.size()));
-  state.iteration = 0;  // a first iteration takes no momentum step
+  state.iteration = 0;  // displace() adds its momentum term from iteration 1 on
   for (;; ++out.projections) {
     out.compression = mean_compression(state, p, excess, mass);
     if (out.compression < enough || out.projections == most) return out;

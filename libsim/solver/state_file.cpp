@@ -37,8 +37,8 @@ void add(std::ostream& text, const Readings& r) {
        << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
 }
 
-/// Adds the scene's hash, and its values that influence a run except recirculation_corner_m, because a scene
-/// that was not read from a file has no hash.
+/// Adds the scene's hash. A scene that was not read from a file has no hash, so this adds also the scene's
+/// values that influence a run, except recirculation_corner_m.
 void add(std::ostream& text, const Scene& s) {
   text << s.sha256 << ' ' << s.gravity_m_s2.size() << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;

@@ -28,8 +28,8 @@ SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then th
   }
 }
 
-/// Ratio of an area of the body's surface to the area opposite to it at `distance` from the surface. It is
-/// below 1 at round surfaces.
+/// Area of a patch of the body's surface, divided by the area of the patch's offset at `distance`. The ratio
+/// is below 1 at round surfaces, and 1 at flat ones.
 SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
   if (body.radius == 0) return 1;
   const float share = body.radius / (body.radius + at_least(distance, 0.0f));

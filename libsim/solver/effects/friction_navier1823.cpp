@@ -34,8 +34,8 @@ struct BrakingBodies {
   BodyListener to;
 
   /// Maximum share of the slip that a substep removes at body b. A free body that is lighter than the layer
-  /// of water it brakes would otherwise oscillate. At the limit, body and layer get the same speed. The layer
-  /// is taken as large as possible: around a ball that contains the body.
+  /// of water it brakes would otherwise oscillate. At the limit, body and layer get the same speed. The limit
+  /// assumes the largest possible layer: a shell around a ball that contains the body.
   SIM_FN float most_steps(int b, float d) const {
     if (!free || free[b].mass == 0) return 1;
     const float out = length(solids.bodies[b].half) + solids.bodies[b].radius + d;

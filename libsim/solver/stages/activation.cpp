@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr float cell_spacings = 10;  ///< edge of the velocity grid's cells in d_*
+constexpr float cell_spacings = 10;  ///< edge of the velocity grid's cells, in spacings d_* of level 0
 
 struct ActivateAll {
   std::uint8_t* active;
@@ -16,7 +16,7 @@ struct ActivateAll {
   }
 };
 
-/// Chooses the particles that the frame solves: Algorithm 3, lines 8 and 9.
+/// Chooses the particles that the frame solves: ViP-Fluid, Algorithm 3, lines 8 and 9.
 template <class Boundary>
 struct Choose {
   const Vec4* position;
@@ -80,7 +80,7 @@ using ActivationColumns =
                columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
                columns(Column::Saliency, Column::Age)>;
 
-/// Measures the particles' importance, Eq. 12-14, and the range that normalises it.
+/// Measures the particles' importance, ViP-Fluid Eq. 12-14, and the range that normalises the importance.
 void measure(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const float spacing = 0.5f * state.finest_support;
@@ -122,7 +122,7 @@ void run_activation(FluidState& state, ActivationColumns p) {
   const int n = p.size();
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
   a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
-  // After splits and merges in weightless water, the stage parting moves all particles.
+  // After splits and merges in weightless water, the stage parting moves all particles, so all are solved.
   const bool parts = state.parameters.weightless() && state.levels.changed;
   state.all_active = a.beta >= 1 || n == 0 || parts;
   if (!a.columns_set || (state.all_active && !a.all_marked))

@@ -35,9 +35,9 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
     float excess = at_most(at_least(density[i] - 1, -1.0f), most_excess);
-    // Near fresh particles the excess is reduced by at most a quarter. A larger reduction is not possible:
-    // the cells must limit the density of a tank in which all particles split, and remaining compression
-    // would later become speed.
+    // Near particles that split or merged recently, the excess is reduced by at most a quarter. A larger
+    // reduction is not possible: the pressure on cells must limit the density of a tank in which all
+    // particles split, because remaining compression would later become speed.
     if (ease) excess *= 0.75f + 0.25f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
@@ -126,7 +126,7 @@ struct ClassifyRound {
   }
 };
 
-/// x_i -= grad q.
+/// Moves each particle by the coarse pressure q: x_i -= grad q.
 template <class Selection>
 struct Shift {
   Selection select;

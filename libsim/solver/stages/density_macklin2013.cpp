@@ -7,9 +7,9 @@ namespace {
 
 /// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
 /// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
-/// Sums use mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel except for one factor. A particle
-/// that is not solved has lambda = 0; unless OthersYield, it does not contribute to the sum over j, as if its
-/// mass were infinite.
+/// `missing` is the share of the kernel behind walls and obstacles. Sums use mass ratios m_j / m_i: with V_i
+/// = m_i / rho_0 the masses cancel except for one factor. A particle that is not solved has lambda = 0;
+/// unless OthersYield, it does not contribute to the sum over j, as if its mass were infinite.
 template <bool OneLevel, bool OthersYield, class Selection, class Boundary>
 struct Density {
   Selection select;

@@ -5,7 +5,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Delta p_i = w_i [lambda_i grad_i C_wall + (1 / rho_0) sum_j (m_j lambda_i + m_i lambda_j + s_ij) grad_i
-/// W_ij]; the pair term is antisymmetric, so that sum m_i Delta p_i = 0 away from walls.
+/// W_ij], with s_ij of tensile_term(). The pair term is antisymmetric, so that sum m_i Delta p_i = 0 away
+/// from walls.
 template <bool OneLevel, bool Tensile, class Selection, class Boundary>
 struct Displace {
   Selection select;
@@ -70,7 +71,8 @@ struct Displace {
       x += parted(slot, self, own);
       Witness{guards, id, half}.note(Trouble::Coincident, i);
     }
-    // `next` still contains the positions before the last projection.
+    // The momentum term repeats a share of the last projection's step: `next` still contains the positions
+    // before that projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
     if (walls.project(x, xyz(self), wall_gap * self.w / 2))
       atomic_add(&guards->wall_projected, std::uint64_t{1});
@@ -86,8 +88,9 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// Step that separates particle i from particles at the same position. Their offset has no direction, so
-  /// their ids determine one. The step is never zero, even if the density alone would not separate them.
+  /// Step that separates particle i from particles at the same position. The offset between such particles
+  /// has no direction, so their ids determine the step's direction. The step is never zero, even if the
+  /// density alone would not separate the particles.
   /// Steps are weighted so that a pair's centre of mass does not move.
   SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);

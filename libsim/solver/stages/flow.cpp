@@ -24,7 +24,7 @@ struct Pour {
   Vec4* velocity;
   Vec3 mouth;
   float radius, speed;
-  Vec3 lift;  ///< Fall::lift()
+  Vec3 lift;  ///< minus the acceleration of gravity, m/s2
   int sites;
   double first_lead, interval;  // s
   double first_turn;            // full turns
@@ -150,7 +150,7 @@ void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, P
   state.lists_hold = state.lists_hold && layers == 0;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
-  // Layers that could not be poured are not poured later.
+  // Layers for which there was not enough water are dropped: they count as poured.
   before.length_m += due.count * layer.pitch_m;
   before.layers += due.count;
 }

@@ -51,7 +51,7 @@ struct SolverParameters {
   EffectCoefficients effects;  ///< coefficients in SI units; 0 = no stage of the effect runs
   /// Speed limit, m/s (most_speed() in fluid_simulation.hpp): faster particles are slowed to it and counted.
   float most_speed = 0;
-  /// Minimum distance to a wall, as a share of d.
+  /// Minimum distance of a particle to a wall, as a share of the particle's spacing.
   float wall_gap = 0.1f;
 };
 
@@ -82,7 +82,7 @@ struct Brake {
 /// Scalars of a step of the conjugate gradients. They stay on the device, so that the host need not wait for
 /// them.
 struct ConjugateStep {
-  float rest;   ///< r r
+  float rest;   ///< r r, with r the residual
   float along;  ///< step length of x along p
   float turn;   ///< factor of p, the present direction, in the next direction
 };
@@ -123,7 +123,7 @@ struct Buoyancy {
 
 // Timers for the parts of a frame, and for its passes.
 
-/// The parts of the paper's Table 2 to which stages are assigned.
+/// Parts of a frame, as in ViP-Fluid's Table 2. Each stage belongs to one part.
 enum class Part { Saliency, Levels, Activation, Solve, count };
 
 /// Measures the time of each part of a frame. Off until switched on. While on, it waits for the device
@@ -190,8 +190,8 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;  ///< h_* = 4 r_*, m: h of level 0, even if the method has no particles of level 0
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  /// Mass of the particles at the start minus the drained mass, in m_*; mass that nozzles have taken but not
-  /// yet poured is negligible.
+  /// Mass of the water, in m_*: the mass at the start minus the drained mass. It includes mass that nozzles
+  /// have taken but not yet poured, which is negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
   Vec3 refuge{};           ///< position for particles whose own position is lost

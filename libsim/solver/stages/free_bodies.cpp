@@ -13,7 +13,7 @@ namespace {
 struct Move {
   Body* bodies;
   FreeBody* free;
-  const MeshGrid* meshes;  ///< as in Solids
+  const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
   Walls walls;
   BodyDrive drive;
 
@@ -41,10 +41,10 @@ struct Move {
 struct Push {
   FreeBody* free;
   const Body* bodies;
-  const MeshGrid* meshes;  ///< as in Solids
+  const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
   const BodySum* sums;
   const BodySum* by_effects;
-  const std::uint64_t* wet;  ///< volume below the water level, per body; nullptr: the whole body
+  const std::uint64_t* wet;  ///< ObstacleState::wet; nullptr: bodies count as wholly under water
   float per_dt;              ///< 1 / dt: converts sums of mass times displacement to momentum
   float per_dt2;
 

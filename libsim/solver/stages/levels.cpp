@@ -76,7 +76,7 @@ void run_opening_targets(FluidState& state,
   const float reach = state.supports.h[coarsest];
   for (int k = 0; k < state.walls.opening_count; ++k) {
     const Opening& o = state.walls.openings[k];
-    // The extent across the wall is unbounded.
+    // Along the wall's normal the opening is unbounded, so the minimum is the opening's narrower side.
     const Vec3 size = o.high - o.low;
     const float narrow = at_most(at_most(size.x, size.y), size.z);
     int fits = coarsest;
@@ -116,8 +116,8 @@ Stage opening_targets_stage() {
 
 namespace {
 
-/// Replaces a target coarser than the present level by the present level, unless N (1 - s) exceeds the next
-/// coarser level by at least `dead_band`.
+/// Hysteresis: a particle of level l with a coarser target keeps l as target, unless N (1 - s) is at least
+/// l + 1 + dead_band, with s the saliency and N the number of levels.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;

@@ -15,9 +15,10 @@ struct ObstacleState {
   /// Pushes in this frame: first the pushes of the density constraint, one per body, then the pushes of
   /// effects. Empty unless the obstacles' pushes are recorded.
   Array<BodySum> sums;
-  /// The gauges on obstacles, then the whole of each body; empty without such gauges.
+  /// First the patches of the gauges on obstacles, then one patch for each whole body. Empty without such
+  /// gauges.
   Array<BodyPatch> patches;
-  Array<PatchSum> patch_sums;  ///< of this frame
+  Array<PatchSum> patch_sums;  ///< sums of this frame, one per patch
   /// Volume of each body below the water level, in volumes of m_*, in the fixed point of CellWater.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free

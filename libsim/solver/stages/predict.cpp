@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 struct Weight {
-  Vec3 lift;  ///< Fall::lift()
+  Vec3 lift;  ///< minus the acceleration of gravity, m/s2
   /// Changes the velocity v by the acceleration during dt.
   SIM_FN void act(Vec3, Vec3& v, float dt) const { v = v - dt * lift; }
 };
@@ -54,7 +54,7 @@ struct Drive {
 
   /// Sets the velocity of a particle to zero if its velocity or its position is lost. A position is lost if
   /// it is not finite or farther than `reach` beyond a wall, from where the walls could not bring it back at
-  /// limited speed; the particle is then moved to the refuge. The rest of the fluid never reads lost values.
+  /// limited speed; the particle is then moved to the refuge. Other particles never read lost values.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool far_outside = all_finite(x) && tank(walls).nearest(x) < -reach;
     const bool place_lost = far_outside || !all_finite(x);

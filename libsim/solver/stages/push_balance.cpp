@@ -38,14 +38,15 @@ struct SumPush {
   }
 };
 
-/// Sums rho_0 q A over the cells at walls, along the wall's normal. By Gauss' theorem, walls and bodies
-/// together give the sum of -rho_0 grad q over the water.
+/// Sums rho_0 q A over the cells at walls, along the wall's normal, with q the coarse pressure and A the area
+/// of the cell's face on the wall. By Gauss' theorem, the sum for walls and bodies together equals the sum of
+/// -rho_0 grad q over the water.
 template <class Boundary>
 struct SumWalls {
   PressureFrame frame;
   GridView grid;
   Boundary boundary;
-  float unit_volume;  ///< volume of m_*, m3
+  float unit_volume;  ///< volume of a particle of level 0, m3
   PushBalance* out;
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
@@ -146,7 +147,8 @@ struct SumBodies {
     if (given.wet > 0) atomic_add(&wet[given.body], given.wet);
     if (to.sums) to.add_at_once(given.body, given.record);
   }
-  /// Areas of the faces next to an obstacle's solid cells, m2, along the direction out of them.
+  /// Sum over the cell's faces towards solid cells of obstacles: the face's area, m2, times the unit vector
+  /// out of the solid cell.
   SIM_FN Vec3 solid_sides(int x, int y, int z) const {
     const Vec3 e = slope.frame.edge;
     return {e.y * e.z * (solid(x - 1, y, z) - solid(x + 1, y, z)),

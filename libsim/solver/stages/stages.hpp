@@ -27,7 +27,7 @@ struct Demand {
   bool levels = false;            ///< particles split and merge
   bool forced_targets = false;    ///< a test gives the target levels
   bool gaze_targets = false;      ///< saliency and targets are computed from the gaze alone
-  bool saliency = false;          ///< saliency and targets are computed by Eq. 1-9
+  bool saliency = false;          ///< saliency and targets are computed by ViP-Fluid, Eq. 1-9
   bool saliency_parts = false;    ///< an output needs the parts of saliency
   bool activation = false;        ///< temporal acceleration selects the solved particles
   bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
@@ -56,8 +56,8 @@ struct Stage {
   /// function; with one it runs only if the function also requires it.
   std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
-  /// Entry of the momentum account that records the stage's change of the water's momentum; None: it is
-  /// recorded with the next stage that has an entry.
+  /// Entry of the momentum account that records the stage's change of the water's momentum. None: the change
+  /// is counted in the entry of the next stage that has one.
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< the effect that alone requires the stage
   SharedTerm loop = SharedTerm::None;
@@ -100,8 +100,8 @@ inline std::string if_activation(const Demand& demand) {
   return demand.activation && !demand.settling ? "the method accelerates in time" : "";
 }
 
-/// Reason for the stages that the effect viscosity needs before it: it acts on velocities before particles
-/// move.
+/// Reason for the stages that prepare the effect viscosity (forces, present neighbours). They are needed
+/// because this effect acts on the velocities before the particles move.
 inline std::string if_thick(const Demand& demand) {
   return acts(demand, EffectKind::Viscosity) ? "viscosity acts before the particles move" : "";
 }
@@ -122,7 +122,8 @@ Stage forced_targets_stage();
 Stage opening_targets_stage();
 /// Limits targets of neighbours to differ by at most one level.
 Stage graded_targets_stage();
-/// Algorithms 1 and 2; changes the number of particles and invalidates the neighbour list.
+/// Splits and merges particles (ViP-Fluid, Algorithms 1 and 2). This changes the number of particles and
+/// invalidates the neighbour list.
 Stage split_and_merge_stage();
 /// Moves moving obstacles to their positions at the substep's end.
 Stage obstacles_stage();
@@ -136,8 +137,8 @@ Stage bodies_pushed_stage();
 Stage forces_stage();
 /// Neighbours at the positions before the substep's move, for the effect viscosity.
 Stage present_neighbours_stage();
-/// Forces, unless they have acted, and the explicit step to predicted positions; speed limit; quarantine of
-/// non-finite particles.
+/// Applies forces, quarantine of lost particles and speed limit, unless forces_stage did so in this substep.
+/// Then moves the particles by one explicit step to their predicted positions.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
@@ -150,7 +151,8 @@ Stage coarse_pressure_stage();
 Stage pre_stabilisation_stage();
 /// Separates particles that overlap after a split or a merge, without adding velocity.
 Stage parting_stage();
-/// Density, unilateral constraint and its multiplier lambda, times the shares of ease_stage.
+/// Computes the density and the multiplier lambda of the unilateral density constraint; lambda is multiplied
+/// by the share that ease_stage computes.
 Stage density_stage();
 /// Moves particles by their multipliers, and back inside the walls. The pair terms conserve momentum exactly.
 Stage displacement_stage();
@@ -163,7 +165,8 @@ Stage wall_cells_stage();
 Stage velocity_stage();
 /// XSPH viscosity.
 Stage xsph_stage();
-/// XSPH viscosity for methods that split and merge, with a filter of velocity changes near fresh particles.
+/// XSPH viscosity for methods that split and merge, with a filter of velocity changes near particles that
+/// just split or merged.
 Stage xsph_of_levels_stage();
 /// Multiplies velocities by 0.9 per frame while the water settles.
 Stage settling_stage();
@@ -175,7 +178,8 @@ Stage outflow_stage();
 
 /// Selects the particles that the frame solves.
 Stage activation_stage();
-/// Velocity and energy grids; unsolved particles inherit from them.
+/// Updates the grids of mean velocity and kinetic energy; unsolved particles take their velocity changes from
+/// the velocities of solved particles in their cells.
 Stage velocity_grid_stage();
 
 // Passes that other stages reuse. Each declares the columns it touches; a caller that does not declare them
@@ -213,11 +217,12 @@ BodyDrive body_drive(FluidState& state);
 // For the momentum account of the walls: while it records, kernels skip the clamp at the walls, and
 // clamp_and_listen() applies and records the clamp.
 
-/// Minimum distance to a wall that kernels enforce, as a share of d; none while the account records.
+/// Minimum distance to a wall that kernels enforce, as a share of the particle's spacing. While the account
+/// records, -1e30: kernels then enforce no distance.
 float gap_of_kernels(const FluidState& state);
 using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
 /// Applies the clamp that kernels skipped; does nothing unless an account records. `from`: positions before
-/// the step. `times`: as in WallRecord. `in_both`: also write PredictedNext.
+/// the step. `times`: factor on the recorded pushes (times_taken). `in_both`: also write PredictedNext.
 void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
 /// Corrects the coarse pressure's move from Predicted to PredictedNext, so that its total equals the push of
 /// walls and obstacles, and stops particles at the walls. Afterwards both columns contain the same positions.
@@ -233,8 +238,8 @@ void constrain_density(FluidState& state, DensityView particles, Listed<ActivePa
 void displace(FluidState& state, DisplacementView particles, Listed<AllParticles> few);
 void displace(FluidState& state, DisplacementView particles, Listed<ActiveParticles> few);
 
-/// Saliency of the present state for an output, for any method: `observer` has the eyes. Permutes the columns
-/// and fills the given arrays in the new order.
+/// Saliency of the present state for an output, for any method, as seen by the eyes that `observer` stores.
+/// Permutes the columns and fills the given arrays in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                       Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
 /// Saliency and targets from the gaze alone, in the present order.

@@ -47,15 +47,17 @@ using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
-/// Minimum h / (g dt^2) of short substeps (docs/decisions.md, "Still water of one size").
+/// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
+/// size").
 constexpr double short_from = 800;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
   const double gravity = static_cast<double>(k.gravity.strength);
   const double dt = static_cast<double>(k.dt);
-  // The projections leave a jitter of a small share of d, which is a speed in proportion to d / dt. In short
-  // substeps this speed exceeds the limit of rest, so the limit is raised.
+  // The projections leave a jitter of a small share of the spacing d, which is a speed in proportion to d /
+  // dt. In short substeps this speed would exceed the limit below which particles count as at rest, so the
+  // limit is raised.
   const double shorter =
       gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
   const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);

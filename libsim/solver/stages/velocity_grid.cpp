@@ -41,9 +41,9 @@ struct MeanChange {
   }
 };
 
-/// Algorithm 3, line 15, after all solved particles have moved: unsolved particles take their velocity from
-/// the grid. Their displacement is corrected as if the change had come in equal parts in the frame's
-/// substeps.
+/// ViP-Fluid, Algorithm 3, line 15, after all solved particles have moved: unsolved particles take their
+/// velocity from the grid. Their displacement is corrected as if the change had come in equal parts in the
+/// frame's substeps.
 template <class Boundary>
 struct Inherit {
   const std::uint8_t* active;
@@ -133,7 +133,7 @@ template <class Boundary>
 void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  // Without inherit_change the mean velocities come from the grid V, as in the paper.
+  // Without inherit_change the mean velocities come from the grid V, as in ViP-Fluid.
   const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;
@@ -154,7 +154,8 @@ void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
                              .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
 }
 
-/// Algorithm 3, lines 4-5 and 13-17, in two passes: line 15 reads the grid that line 13 is still writing.
+/// ViP-Fluid, Algorithm 3, lines 4-5 and 13-17. Two passes are needed, because line 15 reads the grid that
+/// line 13 writes.
 void run_velocity_grid(FluidState& state, VelocityGridColumns p) {
   find_means(state, p);
   if (!state.all_active)

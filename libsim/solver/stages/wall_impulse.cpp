@@ -152,16 +152,17 @@ void record_missing_density(FluidState& state, ConstraintView p) {
                            .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
-/// The pressure of the cells at a wall. A pressure gauge may be smaller than a cell. So each face of a cell
-/// is divided into patches, and the pressure varies linearly over them towards the neighbouring cells. The
-/// sum of the patches is the push on the face as push_balance.cpp counts it.
+/// Records the push on each wall by the coarse pressure q of the cells at the wall. A pressure gauge may be
+/// smaller than a cell. So each face of a cell is divided into patches, and q varies linearly over them
+/// towards the neighbouring cells. The sum over the patches is the push on the face as push_balance.cpp
+/// counts it.
 template <class Boundary>
 struct WallCells {
   PressureFrame frame;
   GridView grid;
   Boundary boundary;
   WallRecord to;
-  float unit_volume;  ///< volume of m_*, m3
+  float unit_volume;  ///< volume of a particle of level 0, m3
 
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
@@ -202,9 +203,9 @@ struct WallCells {
   static constexpr int patches = 4;
 };
 
-/// The pressure of the cells on the patches of bodies: rho_0 q A, on the faces between samples inside and
-/// outside a body. The push on the whole body in push_balance.cpp differs slightly; count_obstacles
-/// distributes the difference.
+/// Records the push of the coarse pressure q on the patches of bodies: rho_0 q A for each face, of area A,
+/// between a sample inside and one outside a body. The push on the whole body in push_balance.cpp differs
+/// slightly; count_obstacles distributes the difference.
 struct BodyCells {
   PressureFrame frame;
   GridView grid;

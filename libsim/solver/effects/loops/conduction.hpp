@@ -6,10 +6,11 @@
 namespace sim::SIM_BACKEND {
 
 /// m_i d theta_i / dt = rho_0 sum_j 2 D V_i V_j F_ij (theta_j - theta_i), F = -(dW/dr) / r of poly6, which
-/// stays finite if particles overlap; D is the harmonic mean of two equal conductivities. The term is
-/// antisymmetric, so heat is conserved. All particles conduct, including unsolved ones: they have lists too
-/// (stages/neighbours.cpp). Walls and air contain no particles, and so insulate. Water coarser than the
-/// effect's coarsest level keeps its heat: a pair conducts only if both particles take part.
+/// stays finite if particles overlap. D is the diffusivity; the published harmonic mean of two conductivities
+/// equals it, because all water conducts alike. The term is antisymmetric, so heat is conserved. All
+/// particles conduct, including unsolved ones: they have lists too (stages/neighbours.cpp). Walls and air
+/// contain no particles, and so insulate. Water coarser than the effect's coarsest level keeps its heat: a
+/// pair conducts only if both particles take part.
 struct Conduction {
   static constexpr int sums = 1;
   static constexpr bool of_all = true;
