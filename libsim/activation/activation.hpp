@@ -41,7 +41,9 @@ struct ActivationRules {
   bool keep_fragile_active;
   int longest_rest;
   int least_work;
-  float speed_floor;  ///< epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2
+  /// epsilon_v of ViP-Fluid Eq. 13-14, as a share of sqrt(g d_*) with d_* the spacing of level 0; epsilon_E =
+  /// m_* epsilon_v^2 / 2
+  float speed_floor;
 };
 
 /// Bit fields of Column::Rest: the bits of a counter of inactive frames and of the solved frames after them

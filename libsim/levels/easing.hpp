@@ -1,6 +1,5 @@
 #pragma once
-/// Weakens the density constraint near fresh particles, which just split or merged; after Orthmann and Kolb
-/// 2012.
+/// Weakens the density constraint near particles that just split or merged; after Orthmann and Kolb 2012.
 
 #include "libsim/exec/vec.hpp"
 

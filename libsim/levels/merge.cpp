@@ -19,7 +19,7 @@ struct Remember {
   std::uint8_t* waiting;
   std::uint8_t* wish;
   std::uint8_t* gone;
-  int frames;  ///< frames since the last turn
+  int frames;  ///< frames since the previous update of the levels
   SIM_FN void operator()(int i) const {
     for (int k = 0; k < frames && k < 4; ++k)
       history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
@@ -96,7 +96,7 @@ SIM_FN Vec3 midpoint(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
 /// the neighbour list.
 struct Candidate {
   PairKey key;
-  int place;  ///< -1: none
+  int place;  ///< index in the neighbour list; -1: none
   SIM_FN bool before(const Candidate& other) const {
     return key.before(other.key) ||
            (key.distance2 == other.key.distance2 && key.chance == other.key.chance && place < other.place);

@@ -16,7 +16,7 @@ SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
 struct Stranded {
   int level;
   float distance2;
-  int place;  ///< -1: none
+  int place;  ///< index in the relay's neighbour list; -1: none
   SIM_FN bool before(const Stranded& other) const {
     if (level != other.level) return level > other.level;
     return distance2 < other.distance2 || (distance2 == other.distance2 && place < other.place);
@@ -42,13 +42,13 @@ struct Bid {
   ParticleNeighbours neighbours;
   int* first;
   int* second;
-  std::uint64_t* taken;  ///< worth of the best bid for a stranded particle; 0: none
+  std::uint64_t* taken;  ///< value (worth_of) of the best bid for each stranded particle; 0: none
   Boundary walls;
   LevelRules rules;
   LevelSupports supports;
   std::uint32_t frame;
 
-  /// True if particle i wants to merge, has waited long without a partner, and was not merged in this turn.
+  /// True if particle i wants to merge, has waited long without a partner, and was not merged in this frame.
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }

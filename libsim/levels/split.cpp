@@ -145,7 +145,8 @@ struct CountChildren {
   }
 };
 
-/// Refuses splits beyond the maximum number per turn, and splits whose children exceed the capacity.
+/// Refuses splits beyond the maximum number per update of the levels, and splits whose children exceed the
+/// capacity.
 struct Refuse {
   const int* order;
   const int* extra_sums;

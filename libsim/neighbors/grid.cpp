@@ -13,7 +13,7 @@ namespace {
 /// of its cell were counted before it.
 struct CountCells {
   const Vec4* predicted;
-  const std::uint8_t* level;  ///< nullptr: one level
+  const std::uint8_t* level;  ///< level of each particle; nullptr: all have one level
   CellTable cells;
   int* counts;
   int* cell_of;

@@ -28,7 +28,7 @@ struct ListNeighbours {
   NeighbourList::Need* need;
   Witness witness;
   float margin;
-  std::uint64_t build;  ///< unique per build
+  std::uint64_t build;  ///< number of this build, which no other build of lists has (Candidates::gather)
 
 #ifdef SIM_CUDA
   /// Threads per particle for n particles; the limits were measured on an H200. With several levels a

@@ -18,7 +18,7 @@ struct SaliencyParts {
 enum class Life {
   Core,    ///< values last as long as the particle; the column exists in every run
   Kept,    ///< values last as long as the particle; the column exists if a stage declares it
-  Scratch  ///< values last at most until the substep's end
+  Scratch  ///< values last until the particles are next reordered
 };
 
 /// Rule for a column's values when a split or a merge makes particles. MassMean, Sum, Max and Reset need no

@@ -62,7 +62,7 @@ struct Meeting {
     std::size_t bytes = 0;
     Body* start;      ///< bodies at the beginning of the substep
     BodyRate* rates;  ///< the bodies' velocities, at first without contacts
-    BodyRate* along;  ///< ContactRows::along
+    BodyRate* along;  ///< per body: velocity change per step of the conjugate gradients
     float* speeds;    ///< speed of the fastest point of each body, m/s
     int* found;     ///< number of contacts per group; for two bodies first a flag: 1 = a contact is possible
     Contact* felt;  ///< per pair of bodies: one contact for each tested point of either body

@@ -43,7 +43,7 @@ struct TroubleKey {
 struct Witness {
   Guards* guards;
   const int* id;
-  int half;  ///< number of half substeps since the frame's start, see TroubleKey::of
+  int half;  ///< time of the pass, in half substeps since the frame's start (TroubleKey::of)
   SIM_FN void note(Trouble cause, int i) const {
     atomic_max(&guards->first, TroubleKey::of(half, cause, id[i]));
   }

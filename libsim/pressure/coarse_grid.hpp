@@ -114,8 +114,8 @@ struct LevelBeside {
   float most;
 };
 
-/// Water level beside bodies, measured in the coarse pressure's cells. From a cell inside a body it searches
-/// perpendicular to `up`, in four directions, for the water outside.
+/// Water level beside bodies, measured in the coarse pressure's cells. From a cell inside a body, beside()
+/// searches perpendicular to `up`, in four directions, for the water outside the body.
 struct Waterline {
   CellWater water;
   CellBlock block;

@@ -15,7 +15,7 @@ enum class CellKind : std::uint8_t { Air, Fluid, Solid };
 /// q_j), over those of its six neighbours j that are not solid, equals source_i.
 struct GridView {
   CellBlock block, finest;
-  Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubes
+  Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubic cells
   int scale;         ///< edge of a cell, in finest cells
   CellKind* kind;
   float* q;  ///< 0 in cells without fluid

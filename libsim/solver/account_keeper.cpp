@@ -18,7 +18,7 @@ struct Gather {
   const std::uint8_t* active;  ///< flags of the solved particles; nullptr if all were solved
   const int* id;
   int n, teams;
-  int half;  ///< number of half substeps in the frame, see TroubleKey::of
+  int half;  ///< the frame's end as a time in half substeps since the frame's start (TroubleKey::of)
   Extremes* out;
 #ifdef SIM_CUDA
   static constexpr int particles_a_team = 128;

@@ -41,11 +41,12 @@ double start_acceleration(const Scene& scene, const std::vector<ParticleState>& 
 /// m/s. `acceleration`: largest acceleration by gravity and the central force, m/s2.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
-/// Speed limit, m/s: three times fall_speed, plus three times the capillary speed, plus the squeeze of
+/// Speed limit, m/s: three times fall_speed, plus three times the capillary speed, plus the squeeze speed of
 /// obstacles that turn or swing. Water that strikes a wall shoots up at twice fall_speed (PeersDam: 8.7 m/s
-/// with a fall of 4.4); a higher speed is an error of the solver. Squeeze: an obstacle of half width a that
-/// moves at up to u drives water through gaps of at least one spacing d, at u a / d at most. Without gravity
-/// and with a speed below 0.001 d per frame, the limit is two supports of the finest particles per substep.
+/// with a fall of 4.4); a higher speed is an error of the solver. Squeeze speed: an obstacle of half width a
+/// that moves at up to u drives water through gaps of at least one spacing d, at u a / d at most. Without
+/// gravity and with a speed below 0.001 d per frame, the limit is two supports of the finest particles per
+/// substep.
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters);
 /// Largest speed of the particles at the start, of water from nozzles, and of the obstacles, m/s.

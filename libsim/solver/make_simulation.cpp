@@ -47,8 +47,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
     rested.start = make_on_backend(scene, options)->read_state();
     if (!key.empty()) write_settled(options.cache, key, *rested.start);
   }
-  // A newly settled state is restarted from its particles too, ordered by id, as a cached one is. So both
-  // runs start with the same order of particles, and write identical files.
+  // The run starts from these particles, which are ordered by id, also if the state was just settled and not
+  // read from the cache. So runs with and without the cache write identical files.
   return make_on_backend(scene, rested);
 }
 

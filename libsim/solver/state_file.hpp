@@ -14,8 +14,9 @@ namespace sim {
 inline constexpr int state_file_format = 5;
 
 /// SHA-256 of the scene and of all options that must be equal to resume a state: among others method, n_*,
-/// back end, levels, readings, seed, capacity and numbers of the solver. The source of tau is not part of the
-/// key: runs with equal keys and equal tau continue identically from one state.
+/// back end, levels, sim::Readings, seed, capacity and numbers of the solver. The source of tau, the frame
+/// rate tolerance, is not part of the key: runs with equal keys and equal tau continue identically from one
+/// state.
 std::string run_key(const Scene& scene, const SimulationOptions& options);
 
 /// Writes a temporary file and renames it. base::Error on failure.

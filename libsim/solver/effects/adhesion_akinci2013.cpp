@@ -65,7 +65,7 @@ struct Adhesion {
   float strength;  ///< dt w / rho_0 times pull_share, w = max(work - sigma, 0), m3/s
   float whole;     ///< integral of A from 1/2 to 1
   float per_g;     ///< 1 / G
-  float widest;    ///< largest support that takes part, m
+  float widest;    ///< largest support of particles on which the effect acts, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];

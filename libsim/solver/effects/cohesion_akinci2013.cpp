@@ -25,7 +25,7 @@ struct Cohesion {
   Neighbours neighbours;
   Vec4* velocity;
   float strength;  ///< dt sigma / rho_0, m3/s
-  float widest;    ///< largest support that takes part, m
+  float widest;    ///< largest support of particles on which the effect acts, m
 
   struct Self {
     Vec4 at;
@@ -34,7 +34,8 @@ struct Cohesion {
     PairKernel<OneLevel> pair;
   };
 
-  /// Adds the velocity change by particle j, divided by 6 V_i and by `strength`; see SIM_LANES.
+  /// Adds the velocity change by particle j, divided by 6 V_i and by `strength`. A separate function, so that
+  /// the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

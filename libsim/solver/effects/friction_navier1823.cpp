@@ -30,7 +30,7 @@ SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
 /// Obstacles that brake water. The reaction on each obstacle is recorded.
 struct BrakingBodies {
   Solids solids;
-  const FreeBody* free;  ///< nullptr: no body is free
+  const FreeBody* free;  ///< dynamic state of each body; nullptr: no body is free
   BodyListener to;
 
   /// Maximum share of the slip that a substep removes at body b. A free body that is lighter than the layer
@@ -59,15 +59,15 @@ SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
   return slowed_by(bodies.solids.walls, at, v, way);
 }
 
-/// Applies friction to all particles, solved or not, unless they are too coarse for the effect. (The tuned
-/// readings solve all particles near a wall anyway.)
+/// Applies friction to all particles, solved or not, unless they are too coarse for the effect. (With the
+/// preset `tuned`, all particles near walls and obstacles are solved in every frame.)
 template <class Boundary>
 struct Slide {
   const Vec4* position;
   Vec4* velocity;
   Boundary boundary;
   float way;     ///< c dt, m
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     if (at.w > widest) return;

@@ -16,10 +16,10 @@ struct WarmAtWalls {
   float* temperature;
   Walls walls;
   HeatLedger* ledger;
-  float wall;      ///< K above the reference
+  float wall;      ///< temperature of the walls, K above the reference
   float spread;    ///< 2 D dt, m2
-  float wall_gap;  ///< minimum distance to a wall, as a share of d
-  float widest;    ///< largest support that takes part, m
+  float wall_gap;  ///< minimum distance to a wall, as a share of the particle's spacing
+  float widest;    ///< largest support of particles on which the effect acts, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
@@ -65,7 +65,7 @@ void warm_at_walls(FluidState& state, WarmView p) {
 
 struct MassOf {
   const std::uint8_t* level;
-  int coarsest;  ///< coarsest level that takes part
+  int coarsest;  ///< coarsest level on which the effect acts
   SIM_FN float operator()(int i) const {
     return level[i] > coarsest ? 0.0f : static_cast<float>(1 << level[i]);
   }
@@ -95,7 +95,7 @@ struct Rise {
   const MeanWarmth* mean;
   Vec4* velocity;
   Vec3 lift;     ///< g beta dt, against gravity
-  int coarsest;  ///< coarsest level that takes part
+  int coarsest;  ///< coarsest level on which the effect acts
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;

@@ -15,7 +15,7 @@ namespace sim::SIM_BACKEND {
 struct BodyRows {
   BodyRow* rows;
   const Body* bodies;
-  const FreeBody* free;  ///< nullptr: no body is free
+  const FreeBody* free;  ///< dynamic state of each body; nullptr: no body is free
   int count;             ///< number of rows
   /// Unit of the fixed-point sums in the rows, m_* m/s. It grows with the stiffest particle's term, because
   /// residuals and directions exceed the fluid's speeds by up to this factor, and fixed point has a limited
@@ -88,7 +88,7 @@ struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyRows rows;
-  float rate;            ///< nu dt times the share that sticks, m2
+  float rate;            ///< nu dt times the effect's stick coefficient (0: fluid slips, 1: it sticks), m2
   float finest_support;  ///< support of the finest particles (mass m_*), m
   /// Minimum s as a share of d, equal to the minimum distance between particles and walls.
   static constexpr float nearest = 0.1f;

@@ -63,9 +63,9 @@ struct Shares {
   const Vec4* position;
   Neighbours neighbours;
   Vec4* bent;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
 
-  /// Adds the weight of particle j; see SIM_LANES.
+  /// Adds the weight of particle j; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
     const Vec4 other = position[j];
     const Vec3 offset = xyz(self) - xyz(other);
@@ -118,7 +118,7 @@ struct Friction {
   Vec4* residual;
   Vec4* direction;
   Vec4* bent;    ///< A times direction
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
   // The fourth component w of residual and direction is the factor that Shares computes; 1 if all particles
   // are solved.
 
@@ -148,7 +148,7 @@ struct Friction {
     y -= along * dy;
     z -= along * dz;
   }
-  /// Adds the pull of particle j; see SIM_LANES.
+  /// Adds the pull of particle j; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add_one(int j, const Self& me, float& x, float& y, float& z) const {
     add(share_of(j), position[j], moving[j], me, x, y, z);
   }

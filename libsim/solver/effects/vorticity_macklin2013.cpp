@@ -18,7 +18,7 @@ struct Smooth {
   static constexpr bool of_all = false;
   const Vec4* curl;
   Vec4* smooth;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = Vec4;  ///< the particle's omega
@@ -52,7 +52,7 @@ struct Confine {
   Vec4* velocity;
   float kick;  ///< c dt, m
   float from, most;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< the particle's |mean of omega|
@@ -91,7 +91,7 @@ struct Show {
   const Vec4* smooth;
   const std::uint8_t* level;
   float* swirl;
-  int coarsest;  ///< coarsest level that takes part
+  int coarsest;  ///< coarsest level on which the effect acts
 
   SIM_FN void operator()(int i) const {
     const float turns = smooth[i].w;

@@ -126,7 +126,7 @@ struct ClassifyRound {
   }
 };
 
-/// Moves each particle by the coarse pressure q: x_i -= grad q.
+/// Moves particles by the coarse pressure q: x_i -= grad q.
 template <class Selection>
 struct Shift {
   Selection select;

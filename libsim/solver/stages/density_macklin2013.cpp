@@ -22,7 +22,7 @@ struct Density {
   Guards* guards;
   float rest_density, relaxation;
 
-  /// Adds particle j to the sums; see SIM_LANES.
+  /// Adds particle j to the sums; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& rho, float& gx, float& gy,
                   float& gz, float& squares, int& zero) const {
     const Vec4 other = predicted[j];

@@ -17,10 +17,11 @@ struct Displace {
   Boundary walls;
   Vec4* next;
   Guards* guards;
-  int half;  ///< number of half substeps since the frame's start, see TroubleKey::of
+  int half;  ///< time of this pass, in half substeps since the frame's start (TroubleKey::of)
   float rest_density, tensile, wall_gap, momentum;
 
-  /// Adds particle j to the step; see SIM_LANES. own: lambda of the particle itself.
+  /// Adds particle j to the step; a separate function, so that the loop vectorises (SIM_LANES). own: lambda
+  /// of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
                   float& pz, int& zero) const {
     const Vec4 other = predicted[j];

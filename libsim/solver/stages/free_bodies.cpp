@@ -44,8 +44,10 @@ struct Push {
   const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
   const BodySum* sums;
   const BodySum* by_effects;
-  const std::uint64_t* wet;  ///< ObstacleState::wet; nullptr: bodies count as wholly under water
-  float per_dt;              ///< 1 / dt: converts sums of mass times displacement to momentum
+  /// volume of each body below the water level (ObstacleState::wet); nullptr: bodies count as wholly under
+  /// water
+  const std::uint64_t* wet;
+  float per_dt;  ///< 1 / dt: converts sums of mass times displacement to momentum
   float per_dt2;
 
   /// Added mass divided by the mass of the displaced water: 0.5 for a sphere far from walls, 0.64 for a cube;

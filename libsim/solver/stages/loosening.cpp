@@ -24,7 +24,7 @@ struct Loosen {
   Vec4* position;
   const float* density;
   const int* id;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
   float less;    ///< limit of the step of thick fluid along each axis, divided by h^2, 1/m
 
   SIM_FN void operator()(int slot) const {

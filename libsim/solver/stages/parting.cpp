@@ -25,8 +25,8 @@ struct Follow {
   }
 };
 
-/// Lists the fresh particles, which split or merged in this frame, and the particles within their support:
-/// all of these have the smallest share of the constraint. With `widely`, also lists their neighbours.
+/// Lists the particles that split or merged in this frame, and the particles within their support: all of
+/// these have the smallest share of the constraint. With `widely`, also lists their neighbours.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
@@ -84,9 +84,10 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Separates the particles near fresh ones. An overlap of length l that remains becomes a speed of about l /
-/// dt in one substep. This speed is large compared with that of the water if gravity moves a particle by only
-/// a small share of its support in a substep. In that case more particles are moved, with more projections.
+/// Separates particles that split or merged in this frame, and those near them. An overlap of length l that
+/// remains becomes a speed of about l / dt in one substep. This speed is large compared with that of the
+/// water if gravity moves a particle by only a small share of its support in a substep. In that case more
+/// particles are moved, with more projections.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -111,8 +112,8 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
 }
 
 /// Separates all particles of weightless water until almost no overlap is left. If only the particles near
-/// fresh ones moved, they would compress the others, and the substep would turn this compression into speed.
-/// Under gravity such water falls back; weightless water would fly apart.
+/// those that split or merged moved, they would compress the others, and the substep would turn this
+/// compression into speed. Under gravity such water falls back; weightless water would fly apart.
 void part_all(FluidState& state, PartingColumns p) {
   for (state.iteration = 0; state.iteration < state.levels.rules.weightless_partings; ++state.iteration) {
     constrain_density(state, p);
@@ -124,7 +125,7 @@ void part_all(FluidState& state, PartingColumns p) {
 /// Separates overlapping particles before the first substep moves them. At this time high density means
 /// overlap; during a substep water is also compressed.
 void run_parting(FluidState& state, PartingColumns p) {
-  // Fresh particles exist in the frame's first substep; most frames of water at rest have none.
+  // Particles split and merge before a frame's first substep; in most frames of water at rest, none does.
   if (!state.levels.changed || state.substep > 0) return;
   go_back(state, p);
   p.zero<Column::Lambda>();

@@ -64,8 +64,8 @@ struct SumBodies {
   static constexpr int samples = 4;  ///< samples along a cell's edge
   CoarseSlope slope;
   Waterline waterline;
-  BodyListener to;     ///< records nothing without sums
-  std::uint64_t* wet;  ///< ObstacleState::wet
+  BodyListener to;     ///< records the bodies' pushes on the water, unless its `sums` is nullptr
+  std::uint64_t* wet;  ///< volume of each body below the water level (ObstacleState::wet)
   float unit_volume;
   PushBalance* out;
 

@@ -59,7 +59,7 @@ struct Stage {
   /// Entry of the momentum account that records the stage's change of the water's momentum. None: the change
   /// is counted in the entry of the next stage that has one.
   Change changes = Change::None;
-  EffectKind effect = no_effect;  ///< the effect that alone requires the stage
+  EffectKind effect = no_effect;  ///< the effect to which the stage belongs, if any
   SharedTerm loop = SharedTerm::None;
   std::size_t place = 0;  ///< index among the passes of a schedule, set by the schedule
   // Set by stage_of from the function's view:
@@ -137,8 +137,8 @@ Stage bodies_pushed_stage();
 Stage forces_stage();
 /// Neighbours at the positions before the substep's move, for the effect viscosity.
 Stage present_neighbours_stage();
-/// Applies forces, quarantine of lost particles and speed limit, unless forces_stage did so in this substep.
-/// Then moves the particles by one explicit step to their predicted positions.
+/// Applies quarantine of lost particles, forces (unless forces_stage did so in this substep) and the speed
+/// limit. Then moves the particles by one explicit step to their predicted positions.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
@@ -178,8 +178,8 @@ Stage outflow_stage();
 
 /// Selects the particles that the frame solves.
 Stage activation_stage();
-/// Updates the grids of mean velocity and kinetic energy; unsolved particles take their velocity changes from
-/// the velocities of solved particles in their cells.
+/// Updates the grids of mean velocity and kinetic energy, and sets the velocities of unsolved particles from
+/// those of the solved particles in their cells.
 Stage velocity_grid_stage();
 
 // Passes that other stages reuse. Each declares the columns it touches; a caller that does not declare them

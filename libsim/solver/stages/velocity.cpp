@@ -15,11 +15,11 @@ struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  Vec4* kick;  ///< velocity change, for the filter near fresh particles; nullptr without one
+  Vec4* kick;  ///< velocity change, for the filter of water with levels (RestingWater); else nullptr
   Brake brake;
   float dt;
   Calm still;            ///< criterion of rest for the finest particles
-  float finest_support;  ///< m
+  float finest_support;  ///< support of particles of level 0, m
   /// particles that were at rest before this substep's velocity change count as at rest too
   bool before_kicks;
   SIM_FN void operator()(int i) const {

@@ -86,7 +86,7 @@ struct MarkSparse {
   const std::uint8_t* active;
   const float* density;
   std::uint8_t* rest;
-  float sparse;  ///< rho / rho_0
+  float sparse;  ///< rho / rho_0 below which a particle is marked
   SIM_FN void operator()(int i) const {
     if (active[i])
       rest[i] =

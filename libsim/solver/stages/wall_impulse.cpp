@@ -96,7 +96,7 @@ struct MissingDensity {
   const float* lambda;
   Boundary boundary;
   WallRecord to;
-  float mass_unit;  ///< m_*, kg
+  float mass_unit;  ///< mass of a particle of level 0, kg
   SIM_FN void operator()(int i) const {
     if (lambda[i] == 0) return;
     const Vec4 at = predicted[i];

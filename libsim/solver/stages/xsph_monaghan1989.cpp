@@ -69,7 +69,7 @@ struct Xsph {
     float rest = 0;  ///< degree of rest before this change; only with a filter
   };
 
-  /// Adds particle j to the change of velocity; see SIM_LANES.
+  /// Adds particle j to the change of velocity; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

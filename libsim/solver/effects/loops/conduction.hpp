@@ -6,8 +6,8 @@
 namespace sim::SIM_BACKEND {
 
 /// m_i d theta_i / dt = rho_0 sum_j 2 D V_i V_j F_ij (theta_j - theta_i), F = -(dW/dr) / r of poly6, which
-/// stays finite if particles overlap. D is the diffusivity; the published harmonic mean of two conductivities
-/// equals it, because all water conducts alike. The term is antisymmetric, so heat is conserved. All
+/// stays finite if particles overlap. D is the diffusivity. It is the same for all particles, and so equals
+/// the published harmonic mean of a pair's values. The term is antisymmetric, so heat is conserved. All
 /// particles conduct, including unsolved ones: they have lists too (stages/neighbours.cpp). Walls and air
 /// contain no particles, and so insulate. Water coarser than the effect's coarsest level keeps its heat: a
 /// pair conducts only if both particles take part.
@@ -17,7 +17,7 @@ struct Conduction {
   const float* temperature;
   float* next;
   float spread;  ///< 12 D dt, m2: F = 6 poly6 (h^2 - r^2)^2
-  float widest;  ///< largest support that takes part
+  float widest;  ///< largest support of particles on which the effect acts, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< the particle's temperature

@@ -18,7 +18,7 @@ struct Curl {
   static constexpr float unknown = -1;
   const Vec4* velocity;
   Vec4* curl;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = Vec4;  ///< the particle's velocity

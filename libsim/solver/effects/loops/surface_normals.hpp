@@ -13,7 +13,7 @@ struct SurfaceNormals {
   static constexpr bool of_all = false;
   Boundary walls;
   Vec4* normal;
-  float widest;  ///< largest support that takes part, m
+  float widest;  ///< largest support of particles on which the effect acts, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   struct Self {};
