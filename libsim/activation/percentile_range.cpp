@@ -7,7 +7,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Computes the 1st and the 99th percentile, each interpolated within the bin in which the cumulative count
-/// reaches it.
+/// reaches 1 % or 99 % of n.
 struct PlaceInBin {
   BinCounts counts;
   ValueRange* now;

@@ -11,7 +11,7 @@ namespace {
 constexpr int run_length = 16;
 SIM_FN int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
-/// Largest velocity component in the sums, m/s; faster ones are clamped, so that sums stay below 2^63.
+/// Largest velocity component in the sums, m/s; larger components are clamped, so that sums stay below 2^63.
 constexpr float fastest = 1000;
 
 SIM_FN std::uint64_t fixed(float value) {

@@ -9,7 +9,7 @@ struct CountBirths {
   const std::uint8_t* gone;
   int* births;
   SIM_FN void operator()(int i) const {
-    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // 1 if k = 0: no split
+    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // k = 0: no split
   }
 };
 

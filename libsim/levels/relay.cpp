@@ -121,8 +121,8 @@ struct Bid {
            !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap,
                              team);
   }
-  /// True if the two new particles would be far enough apart. Their distance is half the distance of a and b.
-  /// h: support of the relay, and so of each new particle.
+  /// True if the two new particles would be at least merge_overlap times the sum of their radii apart. Their
+  /// distance is half the distance of a and b. h: support of the relay, and so of each new particle.
   SIM_FN bool apart(int a, int b, float h) const {
     const Vec3 offset = xyz(position[a]) - xyz(position[b]);
     const float least = 2 * rules.merge_overlap * 2 * h / 4;

@@ -119,7 +119,8 @@ struct ListNeighbours {
 #endif
   }
 
-  /// Bit mask of the near particles among the run's next 32, without i; several loads run at once.
+  /// Bit mask of the near particles among the run's next 32, without i. Particles are loaded eight at a time,
+  /// so that their loads overlap.
   SIM_FN unsigned near_ones(int i, Vec4 self, float square, IndexRange run) const {
     constexpr int at_once = 8;
     constexpr float far = 1e30f;

@@ -40,7 +40,7 @@ struct Meeting {
   static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
   /// Share of the penetration beyond slop that a substep corrects.
   static constexpr float mended = 0.5f;
-  /// Part of pad(), as a share of the smaller body's reach.
+  /// First term of pad(), as a share of the smaller body's reach.
   static constexpr float wide = 0.02f;
 
   SIM_FN int width() const { return rough ? 3 : 1; }
@@ -149,7 +149,7 @@ struct Meeting {
       return 16 * mass * speed;
     }
 
-    /// Upper limit of Contact::ahead, m, for a contact that counts.
+    /// A contact is solved only if its Contact::ahead is below this distance, m.
     SIM_FN float pad(Partners pair) const {
       float size = feelers_of(pair.first).reach();
       if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);

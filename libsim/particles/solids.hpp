@@ -221,7 +221,8 @@ struct BodyListener {
     add_at_once(body, sum);
     if (patches.count > 0) add_to_patches(body, xyz(particle), 0.5f * particle.w, at, push);
   }
-  /// Adds a push only to the body's patches; `side`: edge of the particle's square, m.
+  /// Adds a push only to the body's patches, each in proportion to its share of a square on the surface below
+  /// `beside`; `side`: edge of the square, m.
   SIM_FN void add_to_patches(int body, Vec3 beside, float side, Vec3 at, Vec3 push) const {
     patches.at(bodies[body], body, beside, side, [&](PatchSum& patch, float share) {
       BodySum sum{};

@@ -258,7 +258,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.levels = method.adaptive() && levels.first < levels.second;
   out.forced_targets = out.levels && options.forced_targets;
   out.saliency_parts = options.saliency_parts;
-  // Activation weights particles by saliency.
+  // Activation needs saliency too: it weights the particles' importance by saliency.
   const bool looks = !options.forced_targets && (out.levels || out.saliency_parts || out.activation);
   out.gaze_targets = looks && method.target == TargetSource::Gaze;
   out.saliency = looks && method.target == TargetSource::Saliency;

@@ -55,11 +55,11 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// of the water.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
                  std::pair<int, int> levels);
-/// base::Error for an N outside 1 .. 4.
+/// base::Error for a number of levels outside 1 .. 4.
 void check_levels(int levels);
 /// Maximum number of particles. If particles split: particle_capacity of the options, or 8 n_*, the number of
 /// particles if all water is at level 0. Never less than the number `start` of particles at the start.
-/// base::Error if that number is too large for indices.
+/// base::Error if `start` is too large for indices.
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits);
 /// Converts the region for kernels. base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);

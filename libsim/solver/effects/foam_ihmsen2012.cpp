@@ -20,7 +20,8 @@ FoamRules rules_of(const FluidState& state) {
           .crest_depth = e[EffectOption::FoamCrestWeight] * state.foam.cells.grid.frame.edge,
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
           .coarsest = coarsest,
-          // With graded targets, levels of neighbours differ by at most one.
+          // Coarsest level beside emitting water: with graded targets, neighbours differ by at most one
+          // level.
           .coarsest_seen = state.levels.rules.graded ? coarsest + 1 : most_levels - 1,
           .lifetime = e[EffectOption::FoamLifetime],
           .volume = pi / 6 * diameter * diameter * diameter,

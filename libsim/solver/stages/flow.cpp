@@ -159,7 +159,7 @@ void run_nozzle(FluidState& state, NozzleColumns p) {
   auto& jets = state.jets;
   const std::int64_t made = jets.made;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
-    // If the jet has a constant level, the layers poured so far depend on the frame number alone.
+    // If the jet has a constant level, the layers due so far follow from the frame number alone.
     if (!jets.by_target)
       jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
                                      jets.frame, jets.frame_dt_s);

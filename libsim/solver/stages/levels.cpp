@@ -82,7 +82,8 @@ void run_opening_targets(FluidState& state,
     int fits = coarsest;
     while (fits > 0 && narrow < spacings_wide * 0.499f * state.supports.h[fits]) --fits;
     if (fits == coarsest) continue;
-    // Water that flows in from farther away has time to split on its way.
+    // Targets are limited within this distance of the opening. Water from farther away has time to split on
+    // its way to the opening.
     const float margin = narrow + reach;
     Vec3 low = o.low - Vec3{margin, margin, margin};
     Vec3 high = o.high + Vec3{margin, margin, margin};
@@ -139,7 +140,7 @@ struct Grade {
   std::uint8_t* out;
   template <class Team>
   SIM_FN void operator()(int i, Team team) const {
-    const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // targets 0 and 1 need no limit
+    const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // no limit is below 1
     if (team.rank() == 0) out[i] = static_cast<std::uint8_t>(wish);
   }
   /// The limited target of particle i, from this lane's share of the neighbours.

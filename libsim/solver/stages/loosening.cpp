@@ -38,8 +38,8 @@ struct Loosen {
     const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
     position[i] = with_w(xyz(at) + at_most(loosening / 2, less * at.w) * at.w * step, at.w);
   }
-  /// Uniform in [-1, 1). The position replaces the time in the hash, so that a run resumed from a saved state
-  /// takes the same steps.
+  /// A random number, uniform in [-1, 1), from a hash. The hash contains the position instead of the time, so
+  /// that a run resumed from a saved state takes the same steps.
   SIM_FN float along(int i, std::uint32_t axis, float place) const {
     const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
     return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;

@@ -1,4 +1,4 @@
-/// The grid and the combined neighbour list.
+/// The stages that sort the particles into the grid and list their neighbours.
 
 #include "libsim/solver/stages/stages.hpp"
 

@@ -108,15 +108,15 @@ inline std::string if_thick(const Demand& demand) {
 
 /// Takes water in the tank's four corners, the lowest first, and pours it from the nozzles.
 Stage nozzle_stage();
-/// Saliency and target levels from the eyes, the last picture and the fluid.
+/// Computes saliency and target levels from the eyes, the last picture and the fluid.
 Stage saliency_stage();
-/// The parts of saliency, for an output.
+/// Stores the parts of saliency (f_a, f_m, f_T and F of ViP-Fluid) for an output.
 Stage saliency_parts_stage();
-/// Target levels from the gaze alone.
+/// Computes target levels from the gaze alone.
 Stage gaze_targets_stage();
-/// Neighbour list at the frame's start, for stages that read the fluid before it moves.
+/// Lists neighbours at the frame's start, for stages that read the fluid before it moves.
 Stage frame_neighbours_stage();
-/// Targets of tests (LevelState::forced).
+/// Sets the target levels that a test prescribes (LevelState::forced).
 Stage forced_targets_stage();
 /// Limits targets near narrow outlets to levels that fit through them.
 Stage opening_targets_stage();
@@ -133,14 +133,15 @@ Stage bodies_move_stage();
 Stage bodies_meet_stage();
 /// Updates the forces on free obstacles from the water's push in the substep.
 Stage bodies_pushed_stage();
-/// Applies forces, quarantine and speed limit without moving particles; the effect viscosity acts next.
+/// Applies quarantine of lost particles, forces and the speed limit without moving particles; the effect
+/// viscosity acts next.
 Stage forces_stage();
-/// Neighbours at the positions before the substep's move, for the effect viscosity.
+/// Lists neighbours at the positions before the substep's move, for the effect viscosity.
 Stage present_neighbours_stage();
 /// Applies quarantine of lost particles, forces (unless forces_stage did so in this substep) and the speed
 /// limit. Then moves the particles by one explicit step to their predicted positions.
 Stage predict_stage();
-/// Grid and combined neighbour list at the predicted positions.
+/// Builds the grid and the neighbour lists at the predicted positions.
 Stage neighbours_stage();
 /// Computes the share of its density constraint that each particle enforces: below 1 near particles that just
 /// split or merged.
@@ -157,7 +158,7 @@ Stage density_stage();
 /// Moves particles by their multipliers, and back inside the walls. The pair terms conserve momentum exactly.
 Stage displacement_stage();
 /// These three stages record the momentum that walls and obstacles give the water: by holding particles back,
-/// by the density that they replace, and by the coarse pressure's cells.
+/// by their share in the density constraint, and by the coarse pressure on cells.
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();
@@ -193,9 +194,9 @@ void find_neighbours(FluidState& state, NeighboursView particles);
 
 using DensityView =
     ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
-/// Densities and multipliers at the predicted positions of the particles that the frame solves.
+/// Computes densities and multipliers at the predicted positions of the particles that the frame solves.
 void constrain_density(FluidState& state, DensityView particles);
-/// Densities and multipliers of all particles, solved or not; needs lists that are indexed by slots.
+/// Computes densities and multipliers of all particles, solved or not; needs lists that are indexed by slots.
 void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
 
 using DisplacementView =

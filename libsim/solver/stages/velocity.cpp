@@ -8,9 +8,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but without the rounding of x if no projection moves
-/// the particle. The fourth component of the velocity becomes the degree of rest, 0 to 1. The viscosity pass
-/// reads it and resets it to 0.
+/// v += (x* - (x + dt v)) / dt, with x* the predicted position: equal to v = (x* - x) / dt, but without the
+/// rounding of x if no projection moves the particle. The fourth component of the velocity becomes the degree
+/// of rest, 0 to 1. The viscosity pass reads it and resets it to 0.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;

@@ -22,9 +22,9 @@ struct RestingWater {
   const float* ease;
   float strength;
   Calm calm;
-  /// Share of the filter that moving water gets. With 1 dams lose 4 % of their energy; with 0 splits and
-  /// merges move a deep pool faster than the limit of rest. Without gravity no water counts as at rest, and
-  /// the share is 1.
+  /// Share of the filter that moving water gets. With 1, dam breaks lose 4 % of their energy; with 0, splits
+  /// and merges move a deep pool faster than the limit of rest. Without gravity no water counts as at rest,
+  /// and the share is 1.
   float in_motion;
   float viscosity;  ///< additional viscosity of water at rest, as a multiple of the fluid's viscosity
 
