@@ -63,8 +63,8 @@ std::vector<NameColumn> columns_of(const Rows& rows) {
   return out;
 }
 
-/// Names of the stimuli: as table columns where the rows differ, as words of the heading where all rows
-/// agree. The columns of a protocol with factors are always table columns.
+/// Names of the stimuli. A name in which the rows differ becomes a table column; a name that all rows share
+/// becomes a part of the heading. For a protocol with factors, all names are table columns.
 struct Shown {
   std::string head, shared;
   std::vector<std::string> lines;  ///< text of the columns, one string per row
@@ -95,7 +95,7 @@ std::string format_row(const CertificateRow& row) {
   const auto nominal = [&](double value, const char* form) {
     return scheduled ? fmt::format(fmt::runtime(form), value) : std::string("-");
   };
-  std::string profile;  // what the columns of profile_head show
+  std::string profile;  // values in the columns of profile_head
   if (!row.levels.empty()) {
     const auto& error_ms = row.animation_error_ms;
     profile = fmt::format(" {:8.3f} {:8.3f} {:8.2f} {:>8}", row.p99_ms, row.longest_ms, row.hitches,

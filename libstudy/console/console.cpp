@@ -120,7 +120,8 @@ void Console::done(const UnitDone& unit) {
     verdicts_ = unit.verdicts;
   }
   for (const TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
-  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // the trial is over: too late for a cut
+  if (std::exchange(repeat_, false))
+    show_at_the_end(*last_trial_);  // too late for request() to cut the trial
 }
 
 Request Console::request() {

@@ -25,14 +25,15 @@ class Console {
   /// Seconds since the participant's last key, button or movement of the mouse; none: not known.
   using Idle = std::function<std::optional<double>()>;
 
-  /// showing_s: see expected_s(); empty: planned durations.
+  /// showing_s: duration of one showing of each cell, s, for the estimate of the time left (expected_s());
+  /// empty: the planned durations.
   Console(const Protocol& protocol, Store& store, std::filesystem::path database, Idle idle = {},
           std::vector<double> showing_s = {});
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Called on the session's thread: begin() at the start of a session, the others as its SessionHooks.
-  /// request() returns a cut of the current trial only once.
+  /// Called on the session's thread: begin() at the start of a session, the others as its SessionHooks. After
+  /// the experimenter repeats the current trial, request() returns CutCause::Experimenter once.
   void begin(const OpenSession& session);
   void begins(const OpenUnit& unit);
   void shown(const FrameRecord& frame);
@@ -102,12 +103,12 @@ class Console {
   Asking asking_ = Asking::Nothing;
   std::string prompt_, typed_;
   std::vector<std::string> lines_;
-  std::optional<Deed> deed_;  ///< change that the key thread has yet to carry out
+  std::optional<Deed> deed_;  ///< a change that the key thread will carry out next
   std::vector<std::string> warnings_;
   std::optional<Trouble> trouble_;  ///< the reason of the current pause
   std::optional<Ending> ending_;
   std::vector<TimingVerdict> verdicts_;  ///< verdicts on last_trial_
-  std::int64_t page_since_ns_ = 0;  ///< steady clock, at the start of the current step or at its last frame
+  std::int64_t page_since_ns_ = 0;       ///< steady-clock time of the current step's start or last frame
 
   /// Timing of the current stimulus so far.
   struct Course {

@@ -12,7 +12,7 @@ namespace study {
 namespace {
 
 constexpr double little_disk_mb = 500;
-constexpr double long_s = 90;  // s on a page without input before an alarm
+constexpr double long_s = 90;  // after this time on a page without input, an alarm appears, s
 constexpr std::int64_t looks_ns = 1'000'000'000;
 
 std::string short_time(double seconds) { return base::duration_words(std::max(0.0, seconds)); }
@@ -67,9 +67,9 @@ std::string Console::describe_cells(const PlannedTrial& trial) const {
   return all;
 }
 
-/// Verdict, grade, relative deviation of the mean frame rate, late frames and the largest lateness. Frame
-/// rates and the reason only while method and setting are revealed. A showing without a schedule has only the
-/// words "no schedule", or the reason of its cut.
+/// Describes a showing's timing: verdict, grade, relative deviation of the mean frame rate, late frames and
+/// the largest lateness. Adds frame rates and the reason only while method and setting are revealed. For a
+/// showing without a schedule, returns only "no schedule" or the reason of its cut.
 std::string Console::describe(const TimingVerdict& verdict) const {
   if (!(verdict.nominal.mean > 0))
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";

@@ -119,7 +119,7 @@ std::string sync_service(fs::path folder, const PlaceProbe& probe) {
   return {};
 }
 
-/// The folder of the database, or its nearest existing parent.
+/// The folder of the database, after links are resolved; if it does not exist, its nearest existing parent.
 fs::path standing_folder(const fs::path& database, const PlaceProbe& probe) {
   std::error_code ignored;
   fs::path real = fs::weakly_canonical(fs::absolute(database, ignored), ignored);

@@ -12,7 +12,7 @@ namespace study {
 /// Facts of the screen that shows the participant's window.
 struct ScreenFacts {
   double reported_hz = 0;  ///< reported by the system; 0: none
-  double measured_hz = 0;  ///< 0: swaps do not wait for the screen
+  double measured_hz = 0;  ///< measured from buffer swaps; 0: swaps do not wait for the screen
   std::optional<bool> compositor;
   bool software_gl = false;
 };
@@ -32,11 +32,12 @@ struct PreflightLine {
   std::string what, finding;
 };
 
-/// Reads the facts from the system; unknown ones stay empty.
+/// Reads the facts from the system; a fact that the system does not report stays empty.
 StationFacts read_station(const std::filesystem::path& database);
 
-/// One line for each check; none about graphics unless the CPU draws, and none about power if the supply is
-/// not known. needed_bytes: estimate of the bytes that the session will write. A pure function.
+/// One line for each check. A line about graphics is included only if the CPU draws, and a line about power
+/// only if station.on_battery is known. needed_bytes: estimate of the bytes that the session will write. A
+/// pure function.
 std::vector<PreflightLine> judge_preflight(const std::optional<ScreenFacts>& screen,
                                            const StationFacts& station, std::uint64_t needed_bytes);
 

@@ -12,8 +12,8 @@ namespace study {
 /// screen before each stimulus of a pair, and 5 s for each question. A page takes the time of its block or of
 /// reading its text (3.5 words per second), whichever is longer; each question on it adds reading its text,
 /// and 5 s for listed answers, 10 s for a number, 30 s for text, 2 s for a reaction. A pause takes its
-/// planned time. person = false: a simulated participant, who reads and answers at once. showing_s: duration
-/// of one showing for each cell of the design, s; empty: as planned.
+/// planned time. person: false for a simulated participant, who reads and answers at once. showing_s:
+/// duration of one showing for each cell of the design, s; empty: as planned.
 double expected_s(const Protocol& protocol, const OpenUnit& unit, bool person = true,
                   std::span<const double> showing_s = {});
 double expected_s(const Protocol& protocol, std::span<const OpenUnit> units, bool person = true,

@@ -23,7 +23,8 @@ struct MeasuredRefresh {
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double reported_hz);
 
 /// The time at which the screen took over the picture of the last swap (its beat). A swap returns at its beat
-/// or shortly after, so the earliest return counts, shifted by whole periods.
+/// or shortly after. So the result is the earliest of all return times, after each was shifted by whole
+/// periods to the last swap.
 std::int64_t beat_of(std::span<const std::int64_t> returns_ns, double period_ns);
 
 /// The first instant from earliest_ns on in the middle between two beats (times at which the screen takes

@@ -14,9 +14,9 @@
 
 namespace study {
 
-/// Reads standard input and writes to standard error. If standard input is no terminal, its bytes still count
-/// as keys. If standard error is no terminal, messages are written as lines without a screen. When the screen
-/// closes, all messages are printed below the terminal's former content. Ctrl-C works as usual.
+/// Reads standard input and writes to standard error. If standard input is no terminal, its bytes are still
+/// read as keys. If standard error is no terminal, messages are written as lines without a screen. When the
+/// screen closes, all messages are printed below the terminal's former content. Ctrl-C works as usual.
 class ConsoleTerminal {
  public:
   explicit ConsoleTerminal(Console& console);

@@ -51,7 +51,7 @@ bool is_positive(const Protocol& protocol, const TrackAnswer& answer) {
   return (chose_first != first_is_standard) == procedure.comparison;
 }
 
-/// One answer of a track. place: index into track_cells().
+/// One answer in a track. place: index of the answered cell in track_cells().
 struct TrackStep {
   int place = 0;
   bool positive = false;
@@ -110,8 +110,8 @@ stats::QuestPlus quest_of(const std::vector<stats::PsychometricCurve>& curves,
           }};
 }
 
-/// Returns `fixed` indices from 0 to count - 1, evenly spread and ascending. They start over after `count` of
-/// them. A single index is the middle one.
+/// Returns `fixed` indices, evenly spread over 0 ... count - 1 and ascending. If `fixed` exceeds `count`, the
+/// sequence starts over after `count` indices. A single index is count / 2.
 std::vector<int> spread_evenly(int fixed, int count) {
   std::vector<int> out;
   const int round = std::min(fixed, count);
@@ -124,7 +124,7 @@ int next_by_staircase(const Procedure& procedure, const std::vector<TrackStep>& 
   const auto positive = std::make_unique<bool[]>(steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) positive[i] = steps[i].positive;
   stats::StaircaseRules rules = procedure.rules;
-  rules.trials = 0;  // 0: no limit here, as the plan sets the number of trials
+  rules.trials = 0;  // 0: no limit, because the plan sets the number of trials
   const double next = stats::replay_staircase(rules, {positive.get(), steps.size()}).stimuli.back();
   return std::clamp(static_cast<int>(std::lround(next)), 0, count - 1);
 }

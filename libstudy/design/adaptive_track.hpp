@@ -18,9 +18,10 @@ struct TrackAnswer {
   int score = 0;              ///< answer to Procedure::question
 };
 
-/// The trials of one group of cells: each track has its planned number of trials, and the tracks are
-/// interleaved at random. Until it is shown, a trial names the first cell of its track. In a design with
-/// pairs it also names the standard, which half of a track's trials show first.
+/// The trials of one group of cells in random order, with the planned number of trials for each track. As a
+/// placeholder, each trial has the first cell of its track, which chosen_trial() replaces before the trial is
+/// shown. In a design with pairs, each trial also has the standard; every second trial of a track shows the
+/// standard first.
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 
@@ -30,21 +31,24 @@ std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<i
 PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
                           std::span<const TrackAnswer> answers);
 
-/// The cell that identifies the track of `cell`: the track's cell with the lowest level of the adaptive
-/// factor, the standard aside. `cell` itself if the track has only the standard. The design has a procedure.
+/// The cell that identifies the track of `cell`: the track's cell, other than the standard, with the lowest
+/// level of the adaptive factor. Returns `cell` itself if the track has only the standard. The design must
+/// have a procedure.
 int first_of_track(const Design& design, int cell);
 
 /// A threshold estimated from the answers of one track of a staircase or of QUEST+.
 struct TrackEstimate {
   stats::GridEstimate threshold, shape;  ///< threshold in the unit of Procedure::axis; 95 % intervals
   int trials = 0;
-  /// By level of the track, ascending: its value on the axis, its trials, and those with a positive answer.
+  /// One entry for each level of the track, in ascending order: the level's value on the axis, its number of
+  /// trials, and its number of positive answers.
   std::vector<double> values = {};
   std::vector<int> trials_at = {}, positive_at = {};
 };
 
-/// The posterior of threshold and shape over the grid of QUEST+, with the procedure's form, guess and lapse
-/// rates. Not for ProcedureKind::Ptpe. `answers` as for chosen_trial(); the track is that of cell `cell`.
+/// Estimates threshold and shape for the track of cell `cell`, from their posterior over the grid of QUEST+,
+/// with the procedure's form, guess and lapse rates. `answers`: as for chosen_trial(). Not for
+/// ProcedureKind::Ptpe.
 TrackEstimate estimate_track(const Protocol& protocol, int cell, std::span<const TrackAnswer> answers);
 
 }  // namespace study

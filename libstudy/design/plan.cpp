@@ -141,14 +141,14 @@ std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t ke
 
 namespace {
 
-// Where the random counters begin: those of schedule seeds, and those of adaptive tracks, practice, repeats,
-// catches and random interval orders ("extra"). Shuffles of trials start at counter 0, a random draw of
-// groups at 2^33. The ranges are separate, so that no two purposes share random numbers.
+// First random counters of separate ranges, so that no two purposes share random numbers: the range for
+// schedule seeds, and the range for adaptive tracks, practice, repeats, catches and random interval orders
+// ("extra"). Shuffles of trials start at counter 0, a random draw of groups at 2^33.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
-constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // between repetitions' seeds
+constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // between two repetitions of a trial
 
 class Planner {
   using Pairs = std::vector<std::pair<int, int>>;

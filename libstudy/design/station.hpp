@@ -18,7 +18,7 @@ struct StationNumber {
 };
 
 /// Parses the station number at the end of a station's name, such as "2/5" or "lab2 2/5". None if the name
-/// has no number. base::Error for an impossible number, such as "6/5".
+/// does not end in a station number. base::Error for an impossible number, such as "6/5".
 std::optional<StationNumber> parse_station_number(const std::string& station);
 
 /// The station number as text: "2/5".
@@ -28,9 +28,9 @@ std::string station_text(const StationNumber& station);
 /// So participant code P01 gets different orders at two stations. Returns `seed` if there is no number.
 std::uint64_t seed_of_station(std::uint64_t seed, const std::optional<StationNumber>& station);
 
-/// The slot for the station's next participant: among the least used slots of this station, the one that
-/// comes first. Station k of n gives out every n-th slot from slot k - 1 on, modulo slot_count(). Without a
-/// station number, returns next_slot(protocol, taken).
+/// The slot for the station's next participant. Station k of n gives out every n-th slot from slot k - 1 on,
+/// modulo slot_count(). Of the least used of these slots, returns the first in this order. Without a station
+/// number, returns next_slot(protocol, taken).
 int next_slot(const Protocol& protocol, const std::vector<int>& taken,
               const std::optional<StationNumber>& station);
 

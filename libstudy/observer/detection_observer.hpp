@@ -13,10 +13,10 @@ namespace study {
 ///
 ///   F = (1 - lapse) (1 - exp(-(x / t)^shape)),   t = threshold exp(spread z)
 ///
-/// where z ~ N(0, 1) is drawn once for each person. Without that key in the profile x is 0. A single
-/// stimulus: the question's highest score if it is detected; if not, the lowest score with probability 1 -
-/// guess, else the highest. A pair: the interval with the smaller x if the larger x is detected, else either
-/// interval at random.
+/// where z ~ N(0, 1) is drawn once for each person. If the profile lacks the key, x is 0. A single stimulus
+/// gets the question's highest score if it is detected. If it is not detected, it gets the highest score with
+/// probability guess, else the lowest. Of a pair, the observer chooses the interval with the smaller x if the
+/// larger x is detected, else either interval at random.
 struct DetectionParameters {
   std::string axis;      ///< such as "hitch_ms"
   double threshold = 0;  ///< in the unit of the axis, > 0; must be given

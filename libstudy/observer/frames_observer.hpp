@@ -18,8 +18,8 @@ namespace study {
 /// q + participant + noise; for a Vas see rated_score(). A symptom, on a scale from 0 to 3, is the score
 /// nearest to 0.6 - sickness q + fatigue position + participant' + noise', scaled to longer scales in
 /// proportion; noise' has half the standard deviation of noise, and of two stimuli the smaller q counts. The
-/// second of two stimuli is preferred if q_2 - q_1 + bias + noise > 0. The weights are our choice: they order
-/// the methods plausibly and were not fitted to the paper's results.
+/// second of two stimuli is preferred if q_2 - q_1 + bias + noise > 0. The default weights are our choice:
+/// they rank the methods plausibly and were not fitted to the paper's results.
 struct FramesObserverParameters {
   double grain = 4;             ///< scores per octave of granularity, >= 0
   double flicker = 0.6;         ///< scores per octave of flicker, >= 0

@@ -17,7 +17,7 @@ namespace study {
 namespace {
 
 // The answers of RandomObserver and ConstantObserver carry no information about the stimulus. A report should
-// detect these observers.
+// be able to detect these observers.
 
 /// "random": every score of a question is equally likely for every stimulus.
 class RandomObserver final : public Observer {

@@ -26,7 +26,8 @@ class Observer : public Participant {
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
   /// Returns one of the question's scores. Never called for a question that is not scored (Text) or that has
-  /// `accept`. `judges`: true for the first question of a listed kind on a page that follows a stimulus.
+  /// `accept`. `judges`: true for the first question with listed answers (AnswerKindTraits::listed) on a page
+  /// that follows a stimulus.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
   /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
@@ -37,13 +38,13 @@ class Observer : public Participant {
 /// normal (Box and Muller 1958).
 double uniform_of(std::uint64_t key, std::uint64_t counter);
 double normal_of(std::uint64_t key, std::uint64_t counter);
-/// Keys of random streams, computed from the seed: one key for each participant, and one for each question to
-/// each participant.
+/// Keys of random streams, computed from the session's seed. person_key() differs between participants,
+/// question_key() between participants and between questions.
 std::uint64_t person_key(const Occasion& occasion);
 std::uint64_t question_key(const Occasion& occasion, const Question& question);
 
 /// True for a rating on a scale that starts at 0, as in the SSQ and the FMS, but not for a Vas. Observers
-/// take such a rating for a symptom.
+/// treat such a rating as a symptom score.
 bool asks_symptom(const Question& question);
 /// The question's score that is nearest to x. Thresholds lie halfway between neighbouring scores.
 int nearest_score(const Question& question, double x);
@@ -52,8 +53,9 @@ int nearest_score(const Question& question, double x);
 int rated_score(const Question& question, double latent);
 /// Draws a score of the question; every score is equally likely.
 int random_score(const Question& question, const Occasion& occasion);
-/// The answer of an attentive, healthy person to a question that the model does not cover: the expected score
-/// of a catch question, a press to a Reaction, a low score on a symptom scale, else a random score.
+/// The answer to a question that the observer's model does not cover, as of an attentive, healthy person: the
+/// expected score of a catch question, a press to a Reaction, a low score on a symptom scale, else a random
+/// score.
 int bystander_score(const Question& question, const Occasion& occasion);
 
 /// Makes an observer from "ptpe:a=31,b=0.035", "detect:hitch_ms,threshold=60", "random", "constant:4",

@@ -1,6 +1,7 @@
 #pragma once
-/// Picture features for the frames observer. They need no reference picture: two runs of live fluid
-/// decorrelate long before 30 s, so a distance between their pictures would measure chaos.
+/// Picture features for the frames observer. They need no reference picture. Two runs of the same live fluid
+/// become uncorrelated long before the end of a showing of 30 s, so a distance between their pictures would
+/// measure only that chaos.
 
 #include "libstudy/protocol/design.hpp"
 

@@ -13,7 +13,7 @@ namespace study {
 /// A parameter of an observer's model.
 struct ObserverKey {
   std::string_view name;
-  double* value;  ///< in: the default; out: the given value, if any
+  double* value;  ///< before reading: the default; afterwards: the given value, if there is one
   double min, max;
   bool open_min = false;  ///< true: the minimum itself is out of range
   bool required = false;

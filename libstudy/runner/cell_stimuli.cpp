@@ -14,7 +14,8 @@ namespace study {
 
 namespace {
 
-/// Checks methods, n_* and effects before the session begins, so that no wrong name stops a trial.
+/// Checks the names of methods, n_* and effects before the session begins, so that a wrong name does not stop
+/// the session at a trial.
 void check_words(const Protocol& protocol) {
   for (const Cell& cell : protocol.design.cells) {
     sim::parse_method(cell.stimulus.method);

@@ -16,16 +16,16 @@ namespace study {
 /// empty stimulus. Uses the stimulus of the last cell again if the next cell needs the same stimulus.
 class CellStimuli final : public StimulusSource {
  public:
-  /// base::Error if a solver setting is for a cell that is not computed live. Unless nothing is shown
-  /// (--display none), also if a cell names an unknown method, n_* or effect, if a scene cannot be read, or
-  /// if an obstacle of a live cell leaves the water too little space (sim::check_ways()).
+  /// base::Error if a solver setting is for a cell that is not computed live. If stimuli are shown (not
+  /// --display none), also base::Error if a cell names an unknown method, n_* or effect, if a scene cannot be
+  /// read, or if an obstacle of a live cell leaves the water too little space (sim::check_ways()).
   CellStimuli(const RunOptions& options, const Protocol& protocol, const stats::PtpeModel& model,
               Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 
   Stimulus& stimulus(const Cell& cell) override;
   /// True if the cell is computed while it is shown.
   bool is_live(const Cell& cell) const { return shown_ && !bakes_.of(cell); }
-  /// Description of the stimuli of all cells, for the record, whether or not a cell was shown.
+  /// Description of the stimuli of all cells for the session's record, including cells that are not shown.
   std::string description() const { return description_; }
   /// Numbers of interventions of the solver's guards (sim::GuardCounts), summed over all live fluid computed
   /// so far.
@@ -36,8 +36,8 @@ class CellStimuli final : public StimulusSource {
   StimulusChoice choice_of(const Cell& cell) const;
 
  private:
-  /// Identifies the current stimulus. `rate` is set only for methods with temporal acceleration; `bake` alone
-  /// identifies a bake.
+  /// Identifies the current stimulus. For a bake only `bake` is set; for the empty stimulus nothing is set.
+  /// `rate` is set only for methods with temporal acceleration.
   struct Made {
     StimulusSpec what;
     std::optional<sim::FrameRate> rate;
@@ -57,7 +57,7 @@ class CellStimuli final : public StimulusSource {
   std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<Stimulus> stimulus_;
-  sim::GuardCounts former_guards_;  ///< summed over the earlier stimuli
+  sim::GuardCounts former_guards_;  ///< guards() of all stimuli before the current stimulus, summed
 };
 
 }  // namespace study

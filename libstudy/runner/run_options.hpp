@@ -16,7 +16,7 @@ struct RunOptions {
   int monitor = 0;                      ///< index of the monitor for --display window; 0: the primary monitor
   std::string bake;                     ///< absolute path of the played bake or folder of bakes; empty = none
   std::string backend = "auto";
-  std::string answer;        ///< ways of answering in a headset; see AnswerWays
+  std::string answer;        ///< ways of answering in a headset, such as "ray,stick" (AnswerWays)
   std::string gaze;          ///< "fixed" (the middle of the picture), "mouse", "head", "tracked" or "none"
   bool accept_slow = false;  ///< also play live cells that do not reach their frame rate on this machine
   std::string station;

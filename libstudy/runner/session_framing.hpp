@@ -54,7 +54,7 @@ void check_one_picture(const Protocol& protocol, const std::vector<FramedScene>&
 /// Throws a base::Error for the first scene in which the picture cuts off a part that must stay visible.
 void check_visible(const std::vector<FramedScene>& scenes);
 
-/// The framing for the session's record.
+/// Converts framed scenes to the form that the session's record stores.
 std::vector<SceneFraming> framing_record(const std::vector<FramedScene>& scenes);
 
 /// One line such as "Faucet, 1920x1080: camera 75 deg, 27.4 deg of the eye's view (ratio 0.37)".

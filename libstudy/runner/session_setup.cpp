@@ -149,8 +149,8 @@ std::unique_ptr<FeatureSource> make_features(const RunOptions& options, const Pr
   return features;
 }
 
-/// Reads the PTPE model. The tau of a scheduled cell uses the protocol's kind of mean, so the model must be
-/// fitted to the same kind of mean.
+/// Reads the PTPE model. For a scheduled cell, the tolerance tau is computed from the protocol's kind of mean
+/// frame rate (harmonic or arithmetic), so the model must have been fitted to the same kind of mean.
 stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
                           const Protocol& protocol) {
   if (!ptpe) return {};

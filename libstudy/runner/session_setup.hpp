@@ -27,21 +27,22 @@ struct SessionSetup {
   std::shared_ptr<GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
   std::shared_ptr<SlotSource> slots;     ///< source of a headset's frame slots; null: no headset
   std::unique_ptr<GazeTargets> targets;  ///< targets that validate an eye tracker; null: no eye tracker
-  WindowRequest request;                 ///< polls the requests at the window or headset, or empty
+  WindowRequest request;  ///< combines the requests at the window or headset with others; may be empty
   /// Seconds since the last input at the window or headset; empty without window and headset.
   std::function<std::optional<double>()> idle;
   /// Makes the terminal's keys answer the pages in a headset; empty without a headset.
   std::function<void()> listen;
-  /// Opens the experimenter's second window; empty without window and headset.
+  /// Opens the mirror, the experimenter's second window; empty without window and headset. reveal: the mirror
+  /// shows stimuli too, not only pages.
   std::function<void(bool reveal)> open_mirror;
   std::function<void()> poll;         ///< handles events of the window; empty: no window
   std::optional<ScreenFacts> screen;  ///< facts of the window's screen; none: no window
-  std::vector<FramedScene> scenes;    ///< scenes as framed; empty for --display openxr and none
+  std::vector<FramedScene> scenes;    ///< the scenes on the display; empty for --display openxr and none
   std::vector<std::string> warnings;  ///< warnings about clock and database (warn_of_station())
   MeasuredReport rates;               ///< measured rates of live cells; none: nothing was measured
 
-  /// Differences between the bakes and what protocol and display require; empty: none. Data of such sessions
-  /// are test data.
+  /// Differences between the bakes and what protocol and display require; empty: none. If there are
+  /// differences, the session's data are marked as test data.
   std::string departure() const;
 };
 

@@ -25,11 +25,13 @@ using WindowRequest = std::function<Request(const std::function<Request()>& othe
 struct WindowParts {
   std::unique_ptr<Display> display;
   std::unique_ptr<Participant> person;  ///< the person at the window; unused if a simulated observer answers
-  /// Viewing::gaze for --gaze mouse.
+  /// The mouse's position in a picture of this width and height, px from its lower left corner; none if
+  /// outside. Used as Viewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  std::unique_ptr<GazeSource> mouse;  ///< the mouse as the recorded gaze
+  std::unique_ptr<GazeSource> mouse;  ///< source of the mouse positions that are recorded as gaze
   WindowRequest request;
-  /// Opens the experimenter's second window; base::Error if it cannot be opened.
+  /// Opens the mirror, the experimenter's second window. reveal: the mirror shows stimuli too, not only
+  /// pages. base::Error if the window cannot be opened.
   std::function<void(bool reveal)> open_mirror;
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
@@ -42,8 +44,9 @@ struct WindowParts {
 /// make_window_parts() and open_headset_mirror() throw base::Error if no window can be opened.
 WindowParts make_window_parts(const RunOptions& options, const Protocol& protocol);
 
-/// Opens a window in which the experimenter sees the headset's picture; see HeadsetMirror. The window stays
-/// open as long as the returned object exists.
+/// Opens a window in which the experimenter sees the headset's picture; see HeadsetMirror. reveal: the window
+/// shows stimuli too; otherwise stimuli are black. The window stays open as long as the returned object
+/// exists.
 std::shared_ptr<void> open_headset_mirror(HeadsetDisplay& display, bool reveal);
 
 }  // namespace study

@@ -10,10 +10,10 @@ namespace study {
 /// Shows the pages of an ending that is committed. `left`: units that are not done.
 ///
 /// - Refused, NotEligible: a page of thanks.
-/// - Stopped: a page, for at least 60 s if a stimulus was shown. Then, if a stimulus was shown, the offer to
-/// answer
-///   the last SSQ page in `left`. Then, if answers are stored, the choice to keep or delete them; "delete"
-///   logs a withdrawal_request. At the end a page of thanks.
+/// - Stopped: a page that asks the participant to rest, for at least 60 s if a stimulus was shown. If a
+///   stimulus was shown and `left` has SSQ pages, the participant is then offered the last of them. If
+///   answers are stored, the next page asks whether to keep or delete them; "delete" logs a
+///   withdrawal_request. The last page thanks the participant.
 /// - DroppedOut: no page.
 ///
 /// Request::Stop skips the remaining pages. Other requests of the experimenter have no effect.

@@ -1,6 +1,6 @@
 #pragma once
-/// Buffers the frames, gaze and slots of a running trial, so that the session's thread never waits for the
-/// disk between two frames.
+/// Buffers the frames, the gaze samples and the headset's frame slots of a running trial, so that the
+/// session's thread never waits for the disk between two frames.
 
 #include <atomic>
 #include <condition_variable>
@@ -45,8 +45,8 @@ class FrameJournal {
   /// Buffers one frame, and the gaze and slots recorded up to this frame. Rethrows the error that stopped the
   /// thread, such as a full disk.
   void add(const FrameRecord& frame, const Recorded& recorded);
-  /// Ends the thread, commits the rest of the recordings and `last`, and returns the frames that are not yet
-  /// in the store. Rethrows as add() does.
+  /// Ends the thread, commits the buffered gaze, slots and changes of the IPD as well as `last`, and returns
+  /// the frames that are not yet in the store. Rethrows as add() does.
   std::vector<FrameRecord> finish(const Recorded& last);
 
  private:

@@ -39,9 +39,10 @@ enum class PauseKind {
   Rest,    ///< a countdown
   Break,   ///< a countdown, then a page until the participant continues
   First,   ///< a word announces the first of two stimuli
-  Second,  ///< a word announces the second
+  Second,  ///< a word announces the second of two stimuli
   Held,    ///< paused by the experimenter: a text until Pause::over() is true
-  /// a problem prevents a trial: a text until Pause::over() is true, or with a button if it is empty
+  /// a problem prevents a trial: a text until Pause::over() is true or, if `over` is empty, until a button is
+  /// pressed
   Trouble
 };
 
@@ -67,7 +68,7 @@ enum class Notice {
 
 /// Questions with the answers yes and no when a session ends before its last unit.
 enum class Offer {
-  StayOut,        ///< is consent really refused?
+  StayOut,        ///< does the participant really refuse consent?
   Questionnaire,  ///< would you answer a page about how you feel?
   Keep            ///< may the data be kept? no: they are deleted
 };
@@ -96,7 +97,8 @@ class Participant {
   virtual void before_trial(const Occasion&) {}
   /// Waits on `clock` until the pause is over; a Break also waits until the participant continues.
   virtual void pause(const Pause& pause, Clock& clock, const Check& check) = 0;
-  /// Shows a page after the session's end for at least `least_s`. Every notice except Over is the last page.
+  /// Shows the page of a notice after the session's end, for at least `least_s`. A page of any notice except
+  /// Over is the participant's last page.
   virtual void tell(Notice, double /*least_s*/, Clock&, const Check&) {}
   virtual bool offer(Offer, Clock&, const Check&) { return true; }
 };

@@ -19,11 +19,11 @@ class Questioning {
 
   /// Asks those of `questions` that have no answer in `unit` yet, on one page, and commits the answers
   /// together. Personal answers go to the personal file; a personal question with an answer in the file is
-  /// not asked again if its wording is unchanged. With `last`, the unit is then done. attempt: number of the
-  /// trial's showing that the questions are about, from 1; 0 for a page. Returns the ending if an answer ends
-  /// the session. The ending is committed together with the answers, but before personal answers: if the
-  /// program is killed in between, an excluded person is still excluded. Refused consent stores no answers.
-  /// base::Error for an invalid answer; then no answer of the page is stored.
+  /// not asked again if its wording is unchanged. If `last` is true, also marks the unit as done. attempt:
+  /// number of the trial's showing that the questions are about, from 1; 0 for a page. Returns the ending if
+  /// an answer ends the session. The ending is committed together with the answers, but before personal
+  /// answers: if the program is killed in between, an excluded person is still excluded. Refused consent
+  /// stores no answers. base::Error for an invalid answer; then no answer of the page is stored.
   std::optional<Ending> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
                             const Occasion& occasion, bool last, const Check& check);
 

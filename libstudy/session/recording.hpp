@@ -1,6 +1,6 @@
 #pragma once
-/// Records a presentation: the headset's slots, and gaze and head poses if the participant allows gaze
-/// recording.
+/// Records a presentation: the headset's frame slots (SlotRecord), and gaze and head poses if the participant
+/// allows gaze recording.
 
 #include <cstdint>
 #include <optional>
@@ -37,7 +37,7 @@ class Recording {
 
   /// The kind of the recorded gaze's source; Mouse if no gaze is recorded.
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
-  /// Returns the gaze, slots and changes of the IPD recorded since the last call.
+  /// Returns the gaze samples, frame slots and changes of the IPD that were recorded since the last call.
   Recorded take();
   /// Throws TrialAgain if the eye tracker's samples that take() returned had a gap longer than
   /// longest_gaze_gap_ns without a valid sample.

@@ -34,7 +34,7 @@ class Repeats {
   const Running& run_;
   int cuts_ = 0;  ///< cuts of the trial since its start or the last pause
   bool eyes_seen_ =
-      false;  ///< no check of the eye tracker is due; reset by a pause and by a cut for lack of gaze
+      false;  ///< true: the eye tracker needs no check; reset by a pause and by a cut for lack of gaze
 };
 
 }  // namespace study

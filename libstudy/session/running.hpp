@@ -30,7 +30,7 @@ struct Running {
 /// Thrown to cut a trial and show it again.
 struct TrialAgain {
   CutCause cause;
-  std::string news{};  ///< names of further events of the headset; may be empty
+  std::string news{};  ///< names of the headset's events that were logged just before the cut; may be empty
 
   /// Text of the cause for notes and the log.
   std::string reason() const { return words_of(cause).happened + (news.empty() ? news : ": " + news); }

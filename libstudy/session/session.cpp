@@ -15,11 +15,13 @@ namespace study {
 
 namespace {
 
-/// At each target: time for a saccade and for the eyes to settle, then time in which samples count, s.
+/// Times at each target, s: settle_s for a saccade and for the eyes to settle, then sample_s in which the
+/// gaze samples are used.
 constexpr double settle_s = 0.8, sample_s = 1;
 
-/// Positions (x, y) of the targets, from -1 to 1: first the middle, then a corner; each later target is a
-/// neighbour of the target before. Long jumps between corners would take longer.
+/// Positions (x, y) of the targets as multiples of Block::extent_deg. The first target is in the middle and
+/// the second in a corner. Each later target is a neighbour of the target before, because a longer saccade
+/// would need a longer settle_s.
 constexpr std::array<std::array<int, 2>, 9> grid{
     {{0, 0}, {-1, 1}, {0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}}};
 

@@ -93,8 +93,8 @@ class Stopped : public std::runtime_error {
 };
 
 /// The frame intervals of a setting on this display, nanoseconds. base::Error if no schedule has the
-/// setting's mean and standard deviation, or if the display's refresh rate only approximates them and the
-/// protocol does not accept approximate settings.
+/// setting's mean and standard deviation, or if the display's refresh rate permits only an approximation and
+/// the protocol does not accept approximate settings.
 std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSetting& setting,
                                           const Display& display, std::uint64_t schedule_seed);
 
@@ -105,8 +105,8 @@ void check_settings(const Protocol& protocol, const Display& display);
 /// Runs the units of `session` that are not done, in their order. A trial that was cut is shown again from
 /// its start, as a new attempt, as often as repeats.hpp allows. Answered questions are not asked again. An
 /// answer outside Question::accept ends the session: EarlyEnd::Refused on a consent page, after confirmation,
-/// else EarlyEnd::NotEligible. An answer of Question::stop_at or more ends it as EarlyEnd::Stopped. If the
-/// session ended early, returns the ending after say_farewell(). Throws Stopped, or the first error of a
+/// else EarlyEnd::NotEligible. A score of Question::stop_at or more ends the session as EarlyEnd::Stopped. If
+/// the session ended early, returns the ending after say_farewell(). Throws Stopped, or the first error of a
 /// part; the store then has all given answers.
 std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
                                   const SessionParts& parts, const SessionHooks& hooks);

@@ -27,8 +27,8 @@ double play_speed(const PlayedTrial& played, TimingGrade grade) {
   return shown_ns > 0 ? simulated_s / (1e-9 * static_cast<double>(shown_ns)) : 0;
 }
 
-/// The setting that a showing is judged by. A pattern is judged by the moments of the intervals planned for
-/// this display.
+/// The setting with which the timing of a showing is compared. If the setting has a pattern, its mean and
+/// standard deviation are replaced by those of the intervals planned for this display.
 FpsSetting shown_setting(FpsSetting setting, FpsMean mean, const std::vector<std::int64_t>& intervals_ns) {
   if (!has_pattern(setting)) return setting;
   std::vector<double> seconds;
@@ -47,7 +47,7 @@ double animation_error_ms(const PlayedTrial& played, TimingGrade grade) {
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
     const FrameRecord &a = played.frames[i - 1], &b = played.frames[i];
     const double simulated_s = b.facts.simulation_time_s - a.facts.simulation_time_s;
-    // Content that lags stands still until the lag has passed.
+    // Content with a latency (ContentRules::latency_s) stands still until the latency has passed.
     const bool begun = b.facts.simulation_time_s > played.frames.front().facts.simulation_time_s;
     if (simulated_s < 0 || !begun) continue;
     sum_s += std::abs(simulated_s -
@@ -129,8 +129,8 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   }
 }
 
-/// Lets the procedure choose the cells of a trial. After an interruption the answers are the same, so the
-/// choice is too.
+/// Lets the procedure choose the cells of a trial. After an interruption the answers are still the same, so
+/// the procedure chooses the same cells again.
 void TrialPlayer::choose(OpenUnit& unit) {
   Store& store = run_.parts.store;
   const auto answers = store.track_answers(run_.session.id, run_.protocol.design.procedure->question);
@@ -263,7 +263,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     return verdict;
   } catch (...) {
     // Stores the rest of the frames and the reason of the cut. If this fails too, the next opening of the
-    // database marks the cut. Gaze after the last frame is dropped.
+    // database marks the cut. Gaze samples after the last frame are not stored.
     const std::string reason = reason_of_cut();
     try {
       parts.store.add_frames(presentation, start_ns, journal.finish({}));

@@ -24,7 +24,8 @@ class TrialPlayer {
     OpenUnit& unit;
     int attempt = 1;
     Occasion occasion;
-    /// Frame intervals of the first and the second stimulus, ns.
+    /// Frame intervals of the first and the second stimulus, ns; empty if there is no schedule or no second
+    /// stimulus.
     std::array<std::vector<std::int64_t>, 2> intervals;
     std::vector<TimingVerdict> verdicts;
     Stimulus* ready = nullptr;  ///< the started stimulus of the next stimulus step; null: not started
