@@ -120,8 +120,7 @@ void Console::done(const UnitDone& unit) {
     verdicts_ = unit.verdicts;
   }
   for (const TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
-  if (std::exchange(repeat_, false))
-    show_at_the_end(*last_trial_);  // too late for request() to cut the trial
+  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // request() can no longer cut the trial
 }
 
 Request Console::request() {

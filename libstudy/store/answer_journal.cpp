@@ -130,7 +130,7 @@ void AnswerJournal::remove_if_blank() noexcept {
   try {
     if (blank_) replace_journal(file_.path(), "");
   } catch (const base::Error&) {
-    // A journal that could not be removed contains no row marked as kept, so it does no harm.
+    // A journal that cannot be removed does no harm here, because it contains no row marked as kept.
   }
 }
 

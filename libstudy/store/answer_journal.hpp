@@ -1,6 +1,7 @@
 #pragma once
 /// "<database>.answers.jsonl": a readable copy of all answers beside the database, from which `vip-study
-/// salvage` rebuilds them when the database is damaged or gone. Mode 0600; links are not followed.
+/// salvage` rebuilds them when the database is damaged or gone. The file has mode 0600. A symbolic link at
+/// its path is an error.
 ///
 /// Each line is a JSON object: a table row as it is after a commit (journal_rows.hpp), or a mark such as
 /// {"ready": n}. If a row has several lines, the last one is valid. The journal contains the answers and all
@@ -77,7 +78,7 @@ class AnswerJournal {
   bool waiting_ = false;   // a batch was written, and its commit has not been confirmed by kept()
   bool unmarked_ = false;  // a batch was committed, but the journal lacks its "kept" mark
   bool anew_ = false;      // the journal was lost and begun anew: it lacks the earlier rows
-  std::string trouble_;    // why the last mark could not be written; already reported
+  std::string trouble_;    // why the last mark could not be written (reported already); empty: it was written
   bool blank_ = true;      // the database has no run, and no batch was committed
 };
 

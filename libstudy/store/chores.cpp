@@ -82,7 +82,7 @@ void clean_personal(const fs::path& database, const Chore& chore, CleanUp& done)
 
 void do_chores(Connection& database, CleanUp& done) {
   const fs::path path = database.path();
-  bool personal_waits = false;  // a chore on the personal file failed; later ones must run after it
+  bool personal_waits = false;  // a chore on the personal file failed; later chores on it must wait
   for (const Chore& chore : pending(database)) {
     try {
       if (chore.kind == "backups") {

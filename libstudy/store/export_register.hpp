@@ -21,8 +21,8 @@ std::set<std::string> everybody(sqlite::Connection& database);
 /// data of a public export. base::Error as RegisteredExport().
 void label_everybody(const std::filesystem::path& database);
 
-/// Opens a study for reading in a way that lets its export be registered at the same time. A database that is
-/// not in WAL mode is switched to it: in other modes a database cannot be written while it is read.
+/// Opens a study for reading, so that its export can be registered while the data are read. A database that
+/// is not in WAL mode is switched to it: in other modes a database cannot be written while it is read.
 /// base::Error as RegisteredExport().
 std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 
@@ -83,13 +83,13 @@ class RegisteredFiles {
   std::set<std::string> people_;
 };
 
-/// True if a registered export contains data of a person who withdrew, and the export was made on this
-/// computer or on an unknown one.
+/// True if a registered export contains data of a person who withdrew, and was made on this computer or on a
+/// computer that is not recorded.
 bool holds_withdrawn(sqlite::Connection& database);
 
-/// Deletes every registered export that contains a person who withdrew, and drafts that a kill left beside
-/// the export. Then removes empty folders that were made for exports. A deletion is on disk before the
-/// register's row is deleted.
+/// Deletes every registered export that contains a person who withdrew, and the drafts beside it that remain
+/// from a killed program. Then removes empty folders that were made for exports. A deletion is on disk before
+/// the register's row is deleted.
 ///
 /// Deletes an export only if it is in the register of this installation and its content is unchanged. Lists
 /// in done.left the exports that it does not delete: on another computer, not registered by this

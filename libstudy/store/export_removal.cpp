@@ -25,8 +25,8 @@ namespace {
 
 constexpr std::size_t longest_path = 4096;
 
-/// Removes drafts that a kill left, while an export was written or deleted. Only removes paths that this
-/// installation chose as draft names.
+/// Removes the drafts that remain from a program that was killed while it wrote or deleted an export. Removes
+/// only paths that this installation chose as draft names.
 void remove_drafts(const std::vector<OwnExport>& made) {
   for (const OwnExport& one : made) {
     if (!base::is_draft_name(one.draft.string(), one.path.string())) continue;
@@ -108,8 +108,8 @@ bool concerns(Connection& database, const std::vector<OwnExport>& made) {
 }
 
 /// Deletes the export at the path of `one` if it is registered, unchanged and contains a person who withdrew.
-/// Returns the reason why it stays; empty if it was deleted, or if another export without such a person is
-/// there and the export of `one` is known to be replaced or deleted.
+/// Returns the reason if it is not deleted. Returns an empty text if it was deleted, or if the path now has
+/// an export without such a person and the export of `one` is known to be replaced or deleted.
 std::string remove_standing(Connection& database, const Leftover& one, const std::vector<OwnExport>& made) {
   if (made.empty())
     return "was not registered by this installation (" + own_exports_file().string() +
@@ -153,7 +153,7 @@ std::string remove_leftover(Connection& database, const Leftover& one) {
   return "is no longer there\n  mend: delete it where it was moved or copied to";
 }
 
-/// Removes folders made for exports that are empty and in this installation's register.
+/// Removes empty folders that were made for exports and are in this installation's register.
 void remove_empty_folders(Connection& database) {
   std::vector<std::pair<std::int64_t, fs::path>> folders;
   Statement row(database,

@@ -228,7 +228,8 @@ void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const st
   Transaction transaction(*database_);
   mark_excluded(session, unit.trial_id, reason);
   mark_done(session, unit.id, base::utc_now(), {});
-  // mark_done() also marks the trial as answered: reset the state if no answer counts.
+  // mark_done() has also marked the trial as answered. Resets the trial's state if it has no answer that
+  // counts.
   Statement(*database_,
             "UPDATE trial SET state = 'planned' WHERE trial_id = ?1 AND NOT EXISTS (SELECT 1 FROM response "
             "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")

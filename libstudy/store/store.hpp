@@ -32,7 +32,8 @@ class AnswerJournal;
 /// versions may contain other codes.
 void check_participant_code(const std::string& code);
 
-/// Picture sizes and angles with which a session's display shows a scene, for all cells where they are equal.
+/// Picture sizes, angles and renderer with which a session's display shows a scene. Cells that agree in all
+/// of these share a SceneFraming.
 struct SceneFraming {
   std::string scene;                            ///< scene file as the protocol names it
   int width_px = 0, height_px = 0;              ///< size of the picture as it is drawn
@@ -56,11 +57,12 @@ struct SessionPlan {
   std::optional<std::string> ptpe;   ///< the PTPE file in full
   std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
   std::string station;               ///< name of the station that records the session
-  /// open_runs() leaves it empty, because slot and seed already depend on it
+  /// number of that station; open_runs() leaves it empty, because slot and seed already depend on it
   std::optional<StationNumber> station_number;
   std::optional<double> screen_width_mm, viewing_distance_mm;
-  std::optional<double> refresh_hz;   ///< rate of the display; none: frames are shown when ready
-  std::vector<SceneFraming> framing;  ///< open_runs() leaves it empty; empty in a new plan: nothing is drawn
+  std::optional<double> refresh_hz;  ///< rate of the display; none: frames are shown when ready
+  /// framing of each scene; empty if nothing is drawn, and in plans that open_runs() returns
+  std::vector<SceneFraming> framing;
   Plan plan;
 };
 

@@ -20,7 +20,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// The person with a participant code, also one who withdrew; none if the code was never used.
+/// The person with this participant code, even if the person withdrew; none if the code was never used.
 std::optional<std::string> known_person(Connection& database, const std::string& participant) {
   Statement row(database,
                 "SELECT person FROM session WHERE participant = ?1 UNION "

@@ -15,7 +15,7 @@ namespace study {
 /// Amount of a person's data in a database.
 struct Stock {
   std::int64_t sessions = 0, answers = 0, frames = 0;
-  std::vector<std::string> stations;  ///< stations that recorded the sessions; their databases are untouched
+  std::vector<std::string> stations;  ///< stations of the sessions; their databases stay unchanged
 };
 
 /// The result of a withdrawal, with the files that the experimenter must handle.

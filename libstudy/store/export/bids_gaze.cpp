@@ -267,7 +267,7 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
   const double hz = rate_hz(database, session.id, times_ns);
-  if (hz == 0) return;  // there is no pose, or a single pose and an unknown refresh rate
+  if (hz == 0) return;  // writes nothing without a pose, or with one pose and an unknown refresh rate
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";
   writer.bare_table(stem + "_motion.tsv", rows);
   writer.json(stem + "_motion.json", motion_json(session, hz));

@@ -14,14 +14,15 @@ using sqlite::Statement;
 
 namespace {
 
-/// The texts by which the columns of an exported table name a page.
+/// Texts that name a page in the columns of an exported table.
 struct Page {
-  /// prefix of the columns' names; words that follow the columns' meanings in brackets
+  /// prefix: begins the names of the page's columns; words: follow the columns' meanings, in brackets
   std::string prefix, words;
 };
 
-/// The names of the `time`-th page (from 1) of a block in a session. block empty: of the session as a whole.
-/// A hyphen before `time` makes the prefix distinct, because a block's id has no hyphen.
+/// The names of the `time`-th page (from 1) of a block in a session. An empty `block` means the session as a
+/// whole. The prefix has a hyphen before `time`, which makes it distinct from the prefix of every other
+/// block, because a block's id has no hyphen.
 Page page_of(const LabelledSession& session, const std::string& block, int time = 1) {
   Page page{session.session + "_", "session ses-" + session.session};
   if (block.empty()) return page;

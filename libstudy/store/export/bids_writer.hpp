@@ -20,17 +20,19 @@ using Json = base::Json;
 using Table = std::vector<std::vector<std::string>>;
 
 /// A field of a TSV file; "n/a" if it is empty or NULL. TSV has no quoting, so tabs and line ends in a text
-/// become spaces. Texts are formula_guarded().
+/// become spaces. Texts that a spreadsheet would read as formulas get an apostrophe (formula_guarded()).
 std::string field(std::string text);
 std::string field(const sqlite::Statement& row, int column);
 /// A time in ns as text in seconds.
 std::string seconds(std::int64_t ns);
 
-/// JSON description of a column; replaces "empty:" in the meaning by "n/a:", as BIDS writes missing values.
+/// JSON description of a column; replaces "empty:" in the meaning by "n/a:", because BIDS writes missing
+/// values as n/a.
 Json described(const std::string& meaning);
 Json described(const std::string& meaning, const std::string& unit);
 
-/// Path with which the names of all files of a session begin, up to "_task-<protocol>". data_type: folder.
+/// The beginning of the paths of all files of a session, up to "_task-<protocol>". data_type: the folder in
+/// the session's folder, such as "beh".
 std::string stem_of(const LabelledSession& session, const std::string& data_type = "beh");
 
 /// Writes files into a draft folder, and lists the tables among them in `files`.

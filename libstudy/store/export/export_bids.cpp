@@ -34,7 +34,7 @@ constexpr const char* events_sql =
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), p.gaze_source, u.unit_id, "
     "t.second_cell IS NOT NULL, c.effects";
-constexpr int event_values = 29;  // that events_sql selects
+constexpr int event_values = 29;  // number of values that events_sql selects
 constexpr const char* event_tables_sql =
     " FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
     "JOIN showing w USING (presentation_id) JOIN session s ON s.session_id = t.session_id "
@@ -80,14 +80,14 @@ Json event_columns() {
                             "protocol; n/a: the design does not vary them")}};
 }
 
-/// A column of a session whose protocol has factors.
+/// An additional column of the events table of a session whose protocol has factors.
 struct FactorEvent {
   std::string name, sql;
   Json meaning;
 };
 
-/// The columns of a protocol with factors: the level of each factor, the timing profile, and p99_ms, hitches
-/// and animation_error_ms. Empty without factors.
+/// The additional columns for a session's protocol with factors: the level of each factor, the timing
+/// profile, p99_ms, hitches and animation_error_ms. Empty if the protocol has no factors.
 std::vector<FactorEvent> factor_events(Connection& database, const LabelledSession& session,
                                        const Json& columns) {
   std::set<std::string> taken{"timing", "p99_ms", "hitches", "animation_error_ms"};
@@ -143,7 +143,7 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
   const auto factors = factor_events(database, session, columns);
   for (const FactorEvent& one : factors) columns[one.name] = one.meaning;
   for (Item& item : asked) {
-    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // a column has this name
+    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // until the name is unique
     columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }

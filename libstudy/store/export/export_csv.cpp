@@ -25,9 +25,9 @@ struct CsvTable {
   const char* name;         // name in the schema
   const char* file;         // file name in the export
   const char* order;        // columns to sort by, so that equal databases give equal files
-  const char* left = "";    // omitted column
+  const char* left = "";    // a column that the export omits; empty: none
   bool free_words = false;  // true: free text, written only if CsvChoice::words
-  bool gaze = false;        // true: gaze data, written only if CsvChoice::gaze, of sessions that allow gaze
+  bool gaze = false;        // true: gaze data; with CsvChoice::gaze, written for sessions that allow gaze
 };
 
 constexpr std::array tables{
@@ -56,7 +56,8 @@ constexpr std::array tables{
     CsvTable{"event", "events.csv", "event_id"},
 };
 
-/// A column that the export adds to a table of the schema; `expression`: its SQL.
+/// A column that the export adds to the columns of a table. table: name in the schema; expression: SQL for
+/// the value.
 struct AddedColumn {
   const char *table, *name, *type, *expression, *meaning;
 };

@@ -1,7 +1,7 @@
 #pragma once
 /// Exports the database as CSV files (RFC 4180, UTF-8, with a header line) and a data dictionary. An empty
-/// field means unknown. Texts are formula_guarded(), as the dictionary's first line explains; numbers are
-/// not.
+/// field means unknown. A text that a spreadsheet would read as a formula gets an apostrophe
+/// (formula_guarded()), as the dictionary's first line explains.
 
 #include <filesystem>
 #include <string>
@@ -21,8 +21,8 @@ struct CsvChoice {
 };
 
 /// Writes an export with all participants, for the lab itself, into `folder`. Column sharing_allowed of
-/// sessions.csv records who may be in public exports. The files: one for each table with study data, as far
-/// as `choice` includes it; ratings.csv with one line per planned trial and question; the tables of
+/// sessions.csv records who may be in public exports. The files: one for each table with study data that
+/// `choice` includes; ratings.csv with one line per planned trial and question; the tables of
 /// sickness_tables(); dictionary.csv with the meaning of each column; each protocol's text as
 /// protocol_<hash>.toml; each solver setting's file (setting_file_name()).
 ///

@@ -51,7 +51,8 @@ std::map<std::string, std::string> listed_files(const fs::path& folder, const Ex
   return files;
 }
 
-/// Why a folder is not an unchanged earlier export, as the end of an error text; empty if it is one.
+/// Why a folder is not an unchanged earlier export, as the end of an error text; empty if it is an unchanged
+/// export.
 std::string strange_file(const fs::path& folder, const ExportKind& kind) {
   const auto listed = listed_files(folder, kind);
   std::set<std::string> added, changed;

@@ -132,7 +132,7 @@ std::string number_text(double value);
 std::string csv_number(std::string text, const CsvDialect& dialect);
 /// A column of a result row as a CSV field: a text as csv_field(), a number as csv_number(), NULL as empty.
 std::string csv_value(const sqlite::Statement& row, int column, const CsvDialect& dialect = {});
-/// Joins fields, which are already quoted, to a line with its line end.
+/// Joins fields, which must be quoted already, to a line, and appends the line end.
 std::string csv_line(const std::vector<std::string>& fields, const CsvDialect& dialect);
 /// The beginning of a CSV file: the byte-order mark if the dialect has one, then the header line.
 std::string csv_head(const std::vector<std::string>& names, const CsvDialect& dialect);

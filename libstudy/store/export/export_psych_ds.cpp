@@ -68,12 +68,12 @@ std::string condition_of(const LabelledSession& session) {
 }
 
 /// Metadata of the columns of all files; a column that several files have is listed once. scored: the
-/// exported sessions with sickness data.
+/// sickness data of the exported sessions.
 Json variables(Connection& database, const std::vector<LabelledSession>& sessions,
                std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
   std::vector<RatingColumn> columns = rating_columns(database, "0");
-  std::set<std::string> protocols;  // whose sessions have the same columns
+  std::set<std::string> protocols;  // protocols so far; all sessions of a protocol have the same columns
   for (const LabelledSession& session : sessions) {
     if (!protocols.insert(session.protocol).second) continue;
     const auto more = rating_columns(database, condition_of(session));

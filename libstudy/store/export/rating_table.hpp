@@ -13,7 +13,7 @@ namespace study {
 /// A column of the table of ratings, and the schema's column from which it comes.
 struct RatingColumn {
   std::string name;
-  std::string from;  ///< alias of the table in the SQL: cell and presentation are joined twice, as _1 and _2
+  std::string from;  ///< alias of the table in the SQL, such as cell_1 for the cell of the first stimulus
   std::string table;
   std::string column;
   std::string expression = {};   ///< SQL that replaces <from>.<column>; empty: none
@@ -23,8 +23,8 @@ struct RatingColumn {
 
 /// A factor of a protocol of format 3, as a column of an export.
 struct FactorColumn {
-  /// The factor's name with letters, digits and '_' alone; with "_level" behind it if another column has this
-  /// name.
+  /// Name of the column: the letters, digits and '_' of the factor's name, followed by "_level" if another
+  /// column has this name.
   std::string name;
   std::string factor;  ///< name in the database
   std::string meaning;

@@ -17,7 +17,7 @@ class FileWatch {
   FileWatch(std::filesystem::path path, sqlite3* database);
 
   /// Returns in words how another program changed the file or removed its log since the watch began, e.g.
-  /// "was deleted or moved away while it was in use"; empty if it did not.
+  /// "was deleted or moved away while it was in use"; empty if no program did so.
   std::string trouble();
   /// Moves the log to `kept`, or deletes the log if `kept` is empty, and deletes the log's shared memory. So
   /// SQLite does not copy the log into another file at the same path. Leaves a log or shared memory that

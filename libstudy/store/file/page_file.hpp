@@ -17,7 +17,8 @@ namespace study::salvaging {
 /// and 3 of the format).
 inline constexpr std::string_view database_magic("SQLite format 3\0", 16);
 inline constexpr std::string_view rollback_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-/// header_bytes: size of the database header, with which the first page begins.
+/// header_bytes: size of the database header, with which the first page begins. version_at and
+/// application_at: offsets of user_version and application_id.
 inline constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
 
 /// The bytes as an unsigned number, most significant byte first.
@@ -68,7 +69,8 @@ class Log {
 
   File file_;
   bool big_ = false;
-  std::uint32_t first_ = 0, second_ = 0;  // running checksums
+  std::uint32_t first_ = 0,
+                second_ = 0;  // the log's two checksums over its header and the frames read so far
   std::size_t page_bytes_ = 0, page_count_ = 0, commits_ = 0;
   std::map<std::size_t, std::size_t> places_;  // offset of each page in the log, by page number
   std::vector<std::size_t> first_pages_;       // offset of each committed version of page 1 in the log

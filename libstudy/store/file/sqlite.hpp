@@ -148,8 +148,8 @@ class Connection {
     std::string problem, mend;
   };
   std::optional<Lost> lost_;  ///< set once watch() found the file changed: nothing more is written
-  /// locked by each Transaction; recursive, because a thread's committed Transaction may still exist at its
-  /// next one
+  /// locked by each Transaction; recursive, because a thread may begin a Transaction while its last
+  /// Transaction, already committed, still exists
   std::recursive_mutex turn_;
 };
 

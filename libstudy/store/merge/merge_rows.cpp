@@ -61,7 +61,8 @@ std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes)
 }
 
 /// Adds the permission changes of all copies of a session, without duplicates, to session `session` of the
-/// target. A change that is superseded in one copy is superseded in the target. Clocks play no role.
+/// target. A change that is superseded in one copy is superseded in the target, whatever the times (utc) of
+/// the changes are.
 void add_permissions(Content& content, const std::string& uid, Connection& target, std::int64_t session) {
   std::map<Key, Known> changes;
   std::set<std::pair<std::string, std::string>> events;  // utc, detail

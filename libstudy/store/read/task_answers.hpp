@@ -25,7 +25,7 @@ struct TaskShowing {
   bool played = false;             ///< true: the stimulus was shown; false: it has no timing
   std::optional<Verdict> verdict;  ///< timing verdict; none: there was no schedule
   TimingGrade grade = TimingGrade::CpuSubmit;
-  std::string reason;  ///< why the verdict is not pass
+  std::string reason;  ///< why the timing verdict is not pass
   stats::FpsMoments realised;
   double longest_ms = 0;  ///< longest frame interval
   std::int64_t late = 0;  ///< number of late frames
@@ -97,7 +97,7 @@ struct TaskSession {
   /// if that is later. The session's first answer came later, whatever the station's clock says. Empty: not
   /// known.
   std::string not_before_utc = {};
-  std::string uid = {};  ///< recognises the session in copies of the database
+  std::string uid = {};  ///< random identifier of the session, equal in all copies of the database
 };
 
 /// A protocol with all its sessions, ordered by participant and visit.

@@ -1,7 +1,8 @@
 #pragma once
 /// Reads rows from the pages of a damaged SQLite database without using its schema, its B-trees or SQLite.
-/// Each page with rows is read independently, and a row is assigned to the table whose columns it fits. (The
-/// command .recover of the `sqlite3` program needs the table sqlite_dbpage, which Debian's library lacks.)
+/// Each page with rows is read independently, and a row is assigned to the table whose columns it fits. The
+/// command .recover of the `sqlite3` program is not used, because it needs the virtual table sqlite_dbpage,
+/// which Debian's SQLite library lacks.
 
 #include <cstdint>
 #include <filesystem>

@@ -16,7 +16,7 @@ struct Salvage {
   std::int64_t sessions = 0;           ///< number of sessions in the new database
   std::int64_t answers_database = 0;   ///< number of answers from the damaged database
   std::int64_t answers_journal = 0;    ///< number of answers that only the journal contains
-  std::int64_t answers_under_way = 0;  ///< number of answers_journal that are not marked as kept (committed)
+  std::int64_t answers_under_way = 0;  ///< how many of answers_journal are not marked as kept (committed)
   std::int64_t frames = 0;             ///< number of frames in the new database; the journal contains none
   std::int64_t frames_lost = 0;        ///< number of missing frames of presentations played to the end
   std::int64_t unreadable = 0;         ///< number of unreadable lines in the journal
