@@ -18,7 +18,7 @@ using Guard = std::lock_guard<std::mutex>;
 
 constexpr std::size_t strip_length = 60;
 constexpr std::int64_t strip_ns = 500'000'000;
-constexpr std::size_t most_typed = 500;  // bytes
+constexpr std::size_t most_typed = 500;  // longest text that can be typed, bytes
 
 /// Removes the incomplete UTF-8 character that the limit of most_typed bytes may leave at the end.
 std::string whole_letters(std::string words) {

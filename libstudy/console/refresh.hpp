@@ -11,7 +11,7 @@ namespace study {
 struct MeasuredRefresh {
   bool in_effect = false;    ///< true: swaps wait for the screen
   double nominal_hz = 0;     ///< rate for schedules; 0: swaps do not wait for the screen
-  double period_ns = 0;      ///< measured; 0: swaps do not wait for the screen
+  double period_ns = 0;      ///< measured refresh period; 0: swaps do not wait for the screen
   std::int64_t beat_ns = 0;  ///< time of one beat: the screen takes over a picture
   std::string finding;       ///< the result in words, for the record
 };

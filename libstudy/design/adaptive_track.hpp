@@ -38,7 +38,7 @@ int first_of_track(const Design& design, int cell);
 
 /// A threshold estimated from the answers of one track of a staircase or of QUEST+.
 struct TrackEstimate {
-  stats::GridEstimate threshold, shape;  ///< threshold in the unit of Procedure::axis; 95 % intervals
+  stats::GridEstimate threshold, shape;  ///< with 95 % intervals; threshold in the unit of Procedure::axis
   int trials = 0;
   /// One entry for each level of the track, in ascending order: the level's value on the axis, its number of
   /// trials, and its number of positive answers.

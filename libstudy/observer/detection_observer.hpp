@@ -18,11 +18,11 @@ namespace study {
 /// probability guess, else the lowest. Of a pair, the observer chooses the interval with the smaller x if the
 /// larger x is detected, else either interval at random.
 struct DetectionParameters {
-  std::string axis;      ///< such as "hitch_ms"
+  std::string axis;      ///< key in the timing profile, such as "hitch_ms"
   double threshold = 0;  ///< in the unit of the axis, > 0; must be given
   double shape = 3;      ///< exponent of the Weibull function, > 0
   double guess = 0;      ///< probability of a false alarm, 0 to 1
-  double lapse = 0.02;   ///< 0 to 1
+  double lapse = 0.02;   ///< probability of missing even the largest stimulus, 0 to 1
   double spread = 0;     ///< standard deviation of ln(threshold) over people
 };
 

@@ -41,7 +41,7 @@ struct SessionParts {
   /// Gaze source, recorded during stimuli if the participant allows gaze. Null: no gaze is recorded.
   GazeSource* gaze = nullptr;
   SlotSource* slots = nullptr;     ///< source of the headset's frame slots; null without a headset
-  GazeTargets* targets = nullptr;  ///< targets that validate the eye tracker, or null
+  GazeTargets* targets = nullptr;  ///< targets that validate the eye tracker; null without an eye tracker
 };
 
 /// Report of a finished, committed unit. It contains no answers.

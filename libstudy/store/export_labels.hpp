@@ -43,7 +43,7 @@ void store_labels(sqlite::Connection& database, const std::vector<GivenLabel>& l
 /// A session with its labels for exports.
 struct LabelledSession {
   std::int64_t id = 0;
-  std::string person;                      ///< session.person
+  std::string person;                      ///< identifier of the person (column session.person)
   std::string participant;                 ///< participant code
   std::string subject, session, protocol;  ///< labels; session: "<protocol label>v<visit>"
 };

@@ -20,7 +20,7 @@ inline constexpr const char* permission_event = "permission changed";
 
 /// Permissions of one session. True: allowed; false: refused, or asked but not answered; none: not asked.
 struct SessionPermission {
-  std::string protocol;  ///< name
+  std::string protocol;  ///< name of the protocol
   int visit = 1;
   std::optional<bool> gaze, sharing;
 };

@@ -41,7 +41,7 @@ struct SceneFraming {
   double camera_angle_deg = 0;                  ///< vertical angle of the camera, in (0, 180)
   std::optional<double> visual_angle_deg;       ///< vertical angle of the picture at the eye; none: not known
   std::vector<int> cells;                       ///< cells with this framing, indices into Design::cells
-  std::vector<int> copied;  ///< those of `cells` whose pictures come from a bake; the others are drawn live
+  std::vector<int> copied;  ///< cells whose pictures come from a bake; the session draws the others
   std::string renderer;     ///< renderer that draws or drew the pictures; empty: not known
 };
 
@@ -54,13 +54,13 @@ struct SessionPlan {
   std::optional<std::string> observer;  ///< simulated observer; none = a person
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
-  std::optional<std::string> ptpe;   ///< the PTPE file in full
+  std::optional<std::string> ptpe;   ///< full text of the PTPE file; none: the paper's model
   std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
   std::string station;               ///< name of the station that records the session
   /// number of that station; open_runs() leaves it empty, because slot and seed already depend on it
   std::optional<StationNumber> station_number;
   std::optional<double> screen_width_mm, viewing_distance_mm;
-  std::optional<double> refresh_hz;  ///< rate of the display; none: frames are shown when ready
+  std::optional<double> refresh_hz;  ///< refresh rate of the display; none: frames are shown when ready
   /// framing of each scene; empty if nothing is drawn, and in plans that open_runs() returns
   std::vector<SceneFraming> framing;
   Plan plan;
@@ -77,8 +77,8 @@ struct RunPlan {
 struct OpenUnit {
   std::int64_t id = 0;
   PlannedUnit plan;
-  std::int64_t trial_id = 0;          ///< 0 for a page
-  std::optional<PlannedTrial> trial;  ///< none for a page
+  std::int64_t trial_id = 0;          ///< row number of the trial; 0 for a page
+  std::optional<PlannedTrial> trial;  ///< the trial as planned; none for a page
   int attempts = 0;                   ///< showings of the trial so far
   bool begun = false;  ///< a showing of the trial began since the trial was planned or last set aside
   std::vector<std::string> answered;  ///< ids of answered questions, which are not asked again
@@ -111,7 +111,7 @@ enum class EarlyEnd {
 
 struct Ending {
   EarlyEnd how = EarlyEnd::Stopped;
-  std::string reason;  ///< may be empty
+  std::string reason;  ///< words for a note; may be empty
 };
 
 /// A display slot of a headset, with the index of the frame shown in it; none: the display was black.
@@ -125,7 +125,7 @@ struct ValidatedPoint {
   std::int64_t clock_ns = 0;                  ///< time of the target's first sample
   double azimuth_deg = 0, elevation_deg = 0;  ///< direction of the target
   std::int64_t samples = 0, valid = 0;        ///< number of samples, and of valid samples
-  std::optional<double> accuracy_deg;         ///< none: no valid sample
+  std::optional<double> accuracy_deg;         ///< angle from target to mean gaze; none: no valid sample
   std::optional<double> sd_deg, rms_s2s_deg;  ///< precision; none: too few samples
 };
 
@@ -299,7 +299,7 @@ class Store {
   void keep_file();
 
   std::filesystem::path path_;
-  std::optional<WriterLock> lock_;  ///< none for a temporary copy
+  std::optional<WriterLock> lock_;  ///< none if this Store writes to a temporary copy
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;

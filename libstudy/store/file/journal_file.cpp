@@ -268,7 +268,7 @@ void overwrite(const base::Descriptor& file, const fs::path& path) {
 void overwrite(const fs::path& path) {
   const base::Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   const bool holds_bytes = file.get() >= 0 || (errno != ENOENT && errno != ELOOP && errno != ENXIO);
-  if (!holds_bytes) return;  // missing file, link or pipe
+  if (!holds_bytes) return;  // a missing file, a link or a pipe has no bytes to overwrite
   if (file.get() < 0) fail(path, "cannot be overwritten", errno);
   overwrite(file, path);
 }

@@ -69,8 +69,7 @@ class Log {
 
   File file_;
   bool big_ = false;
-  std::uint32_t first_ = 0,
-                second_ = 0;  // the log's two checksums over its header and the frames read so far
+  std::uint32_t first_ = 0, second_ = 0;  // the log's two checksums, up to the frame read last
   std::size_t page_bytes_ = 0, page_count_ = 0, commits_ = 0;
   std::map<std::size_t, std::size_t> places_;  // offset of each page in the log, by page number
   std::vector<std::size_t> first_pages_;       // offset of each committed version of page 1 in the log

@@ -32,14 +32,14 @@ std::string describe(const Balance& balance);
 struct Merge {
   std::int64_t sessions = 0;       ///< number of sessions in the merged database
   std::int64_t recognised = 0;     ///< number of further copies of these sessions, which were omitted
-  std::int64_t test_sessions = 0;  ///< number of `sessions` that are marked as test data
+  std::int64_t test_sessions = 0;  ///< how many of `sessions` are marked as test data
   /// New codes of people whose code several people had: "P07 of station north is P07-north".
   std::vector<std::string> renamed;
   /// Codes of all people who withdrew; none of their data are in the result.
   std::vector<std::string> withdrawn;
   /// Amount of data that the merge deleted from `into` because the person withdrew elsewhere, by code.
   std::vector<std::pair<std::string, Stock>> buried;
-  CleanUp beside;  ///< backups, personal data and exports of `into`
+  CleanUp beside;  ///< clean-up of the backups, personal data and exports of `into`
   /// Protocols with equal name and version but different texts; their datasets stay separate.
   std::vector<std::string> namesakes;
   std::vector<Balance> balance;               ///< balance of the merged database, by protocol

@@ -65,7 +65,7 @@ std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes)
 /// the changes are.
 void add_permissions(Content& content, const std::string& uid, Connection& target, std::int64_t session) {
   std::map<Key, Known> changes;
-  std::set<std::pair<std::string, std::string>> events;  // utc, detail
+  std::set<std::pair<std::string, std::string>> events;  // utc and detail of each permission event
   for (const SessionCopy& copy : content.copies) {
     if (copy.uid != uid) continue;
     Connection& source = *content.sources[copy.source];

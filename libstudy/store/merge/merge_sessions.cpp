@@ -235,7 +235,7 @@ namespace {
 struct Dealt {
   std::size_t source = 0;
   std::optional<StationNumber> number;
-  std::set<std::string> sessions;  ///< uids
+  std::set<std::string> sessions;  ///< column session.uid of each session
 };
 
 std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& protocol) {

@@ -12,8 +12,8 @@ struct SessionCounts {
   std::string participant, state;    ///< participant code; state as in SessionRow::state
   std::int64_t units = 0, done = 0;  ///< pages and trials: all, and those that are done
   std::int64_t trials = 0, answered = 0, excluded = 0;
-  std::int64_t showings = 0, cut = 0, counting = 0;  ///< all; cut short; with an answer that counts
-  std::int64_t pass = 0, degraded = 0, fail = 0;     ///< timing verdicts of showings
+  std::int64_t showings = 0, cut = 0, counting = 0;  ///< all; cut short; those with an answer that counts
+  std::int64_t pass = 0, degraded = 0, fail = 0;     ///< numbers of showings with each timing verdict
   std::int64_t answers = 0, frames = 0, notes = 0;
 };
 /// The counts of a session; `participant` is empty if the session does not exist.
