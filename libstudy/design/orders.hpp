@@ -19,8 +19,8 @@ std::vector<int> williams_row(int k, int row);
 
 /// A random order of 0 .. k - 1 in which no two successive items clash. Each next item is drawn from the
 /// remaining items that do not clash with the item before. If all remaining items clash, the search starts
-/// over. Empty after 10,000 failed starts (fewer if k is above 141). Not all orders without clashes are
-/// equally likely.
+/// over. Returns an empty order after 10,000 failed starts (fewer if k is above 141). Not all orders without
+/// clashes are equally likely.
 std::vector<int> order_without_clashes(int k, const std::function<bool(int, int)>& clash,
                                        RandomStream& random);
 

@@ -22,8 +22,8 @@ struct PlannedTrial {
   std::uint64_t schedule_seed = 0;  ///< seed for the order of frame intervals; second cell: this value + 1
 };
 
-/// One step of a session: a trial or a page. A page is a block without trials, a catch page, or the break
-/// between two groups.
+/// One step of a session: a trial or a page. A page is a block without trials, a catch page, or a break in a
+/// stimulus block (between two groups or after every break_every trials).
 struct PlannedUnit {
   int position = 0;          ///< 0-based order in the session
   int block = 0;             ///< index into Protocol::blocks

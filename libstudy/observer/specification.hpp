@@ -34,7 +34,7 @@ double read_observer_number(std::string_view specification, std::size_t at, std:
                             double max, const std::string& mend);
 
 /// The keys to write to the record. Omits the last key if its value is 0: records of earlier versions lack
-/// this key and must stay equal.
+/// this key, and equal observers must have equal records.
 template <std::size_t count>
 std::span<const ObserverKey> written(const std::array<ObserverKey, count>& keys) {
   return std::span<const ObserverKey>(keys).first(*keys.back().value == 0 ? count - 1 : count);

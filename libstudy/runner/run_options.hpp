@@ -26,8 +26,9 @@ struct RunOptions {
   bool operator==(const RunOptions&) const = default;
 };
 
-/// JSON. "settings" has an object with text and sha256 for each setting, as read by the exports
-/// (libstudy/store/read/run_settings.hpp); the key is absent without settings.
+/// Formats the options as a JSON object. Its key "settings" has a list with an object for each solver
+/// setting: text and sha256, which the exports read (libstudy/store/read/run_settings.hpp). The key is absent
+/// without settings.
 std::string format_run_options(const RunOptions& options);
 /// Reads the text of format_run_options(); base::Error naming `place` for any other text.
 RunOptions parse_run_options(const std::string& text, const std::string& place);

@@ -81,8 +81,8 @@ struct SessionHooks {
   std::function<void(const Ending&)> ends;  ///< called when an early end is committed, before say_farewell()
   std::function<Request()> request;
   /// Reports to the experimenter why the session pauses. Returns true if the experimenter ends the pause,
-  /// which lasts until request() is GoOn. False, or no hook: the participant's page has a button that ends
-  /// the pause.
+  /// which lasts until request() is GoOn. If the hook returns false, or if there is no hook, the
+  /// participant's page has a button that ends the pause.
   std::function<bool(const Trouble&)> trouble;
 };
 

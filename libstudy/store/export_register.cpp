@@ -152,7 +152,7 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   Transaction transaction(*file);
   enter(*file, own_.kind, own_.path, own_.people);
   // The answer journal beside the database may contain events that the database lacks. The new event_id must
-  // exceed the ids of those events.
+  // exceed the ids of those events, so that no id is used twice.
   Statement(*file,
             "INSERT INTO event (event_id, utc, kind, detail) SELECT max(coalesce(max(event_id), 0), ?) + 1, "
             "?, 'export', ? FROM event")
@@ -200,8 +200,8 @@ void RegisteredExport::will_be(const std::string& sha256) {
   named_ = true;
 }
 
-// The transaction checks after the rename for people who withdrew (tombstones). So a withdrawal either finds
-// the export at its path, or is found here.
+// The transaction checks after the rename for people who withdrew (tombstones). So either the withdrawal
+// finds the export at its path, or this function finds the withdrawal.
 void RegisteredExport::is_in_place() {
   base::sync_folder_of(own_.path);
   const auto file = open_register(database_);

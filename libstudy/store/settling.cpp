@@ -20,7 +20,7 @@ namespace {
 
 std::int64_t schema_number(Connection& database) { return database.integer("PRAGMA user_version"); }
 
-/// Journal lines of a batch with these rows that is marked as kept.
+/// Journal lines of a batch that has these rows and is marked as kept.
 std::string batch(const std::string& rows, std::int64_t number) {
   return rows + ready_line(number) + kept_line(number);
 }

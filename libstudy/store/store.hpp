@@ -140,9 +140,9 @@ struct KeptAnswer {
 class Store {
  public:
   /// Opens the database. how: Open::Create or Open::Write. max_pages > 0 limits the file to that many pages
-  /// of 4 KiB. waiting: how long to wait for locks of other programs; five seconds if empty. First does the
-  /// chores left over (chores.hpp) and the requested withdrawals (withdraw.hpp). The destructor removes a
-  /// file that this Store made if nothing was stored in it.
+  /// of 4 KiB. waiting: decides how long to wait for locks of other programs (Connection::wait_with()); if
+  /// empty, five seconds. First does the chores left over (chores.hpp) and the requested withdrawals
+  /// (withdraw.hpp). The destructor removes a file that this Store made if nothing was stored in it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();

@@ -123,7 +123,7 @@ void add_asks(sqlite::Connection& database, std::int64_t protocol_id, const Prot
   }
 }
 
-/// One line "factor = level" for each factor of format 3.
+/// One line "factor = level" for each factor of the design; empty if the design has no factors.
 std::string levels_text(const Design& design, const Cell& cell) {
   std::string out;
   for (std::size_t i = 0; i < design.factors.size(); ++i)

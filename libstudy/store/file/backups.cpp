@@ -78,8 +78,8 @@ std::vector<std::int64_t> sessions_of(Connection& database, const std::string& p
   return sessions;
 }
 
-/// The sessions of a person in a backup of schema 1. This schema has no column for persons, so they come from
-/// an upgraded copy, which has the same session numbers.
+/// The sessions of a person in a backup of schema 1. This schema has no column for persons, so the sessions
+/// are looked up in an upgraded copy, which has the same session numbers.
 std::vector<std::int64_t> sessions_in_schema_1(const fs::path& backup, const std::string& person) {
   const auto upgraded = open_database(backup, Open::Read, read_schema_steps());
   return sessions_of(*upgraded, person);

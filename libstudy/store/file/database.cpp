@@ -312,7 +312,7 @@ SchemaSteps read_schema_steps() {
 }
 
 void upgrade(Connection& database, const SchemaSteps& steps) {
-  // Set here, because this pragma has no effect within the transactions of the steps.
+  // Switches off foreign keys before the steps, because this pragma has no effect within their transactions.
   database.execute("PRAGMA foreign_keys = OFF");
   auto version = static_cast<std::size_t>(database.integer("PRAGMA user_version"));
   if (version == 0 && steps == read_schema_steps()) {

@@ -69,8 +69,9 @@ std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
 std::optional<FileWatch::Look> FileWatch::seen_now() const {
   const volatile char* memory = shared_memory(database_);
   if (!memory) return {};
-  // Before SQLite copies the log into the file, it marks the copy as under way in the shared memory. So read
-  // the marks after the file's size and time: a change that a copy made is then always marked.
+  // Before SQLite copies the log into the file, it marks the copy as under way in the shared memory. This
+  // function reads the marks after the file's size and time, so that a change made by such a copy is always
+  // marked.
   struct stat file {};
   if (::stat(path_.c_str(), &file) != 0) return {};
   Look seen;

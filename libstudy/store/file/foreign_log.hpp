@@ -5,8 +5,8 @@
 /// The first page of a vip-study database identifies it, and each commit writes this page. The page contains
 /// the schema cookie, a random number (>= first_identity) chosen when the database was made or upgraded, and
 /// a change counter. The cookies of log and file may differ by less than 10,000, because each schema change
-/// increases the cookie by one. The log's change counter must continue the file's. The format:
-/// https://www.sqlite.org/fileformat2.html
+/// and each VACUUM increases the cookie by one. The log's change counter must continue the file's. The
+/// format: https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
 #include <cstdint>

@@ -13,7 +13,8 @@ using sqlite::Statement;
 namespace {
 
 constexpr std::size_t longest_name = 60;
-// Most rows of sqlite_schema that are read; a crafted file may have more than any schema of vip-study.
+// Largest number of rows of sqlite_schema that are read; a crafted file may have more than any schema of
+// vip-study.
 constexpr std::size_t most_objects = 2000;
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }

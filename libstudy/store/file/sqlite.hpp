@@ -72,7 +72,8 @@ class Connection {
   std::string header();
   /// True if SQLite can read the file; false if reading needs files beside it that SQLite may not write.
   bool can_read();
-  /// keep true: the log stays beside the file, and no page of it is copied into the file. Default: false.
+  /// keep true: the write-ahead log stays beside the file, and none of its pages is copied into the file.
+  /// Default: false.
   void keep_log(bool keep);
   /// Treats the file as untrusted until recognise(): forbids changes, and runs no view or trigger of the
   /// file. With Work::OfASchema, a statement that takes longer than reading a schema fails with a

@@ -90,7 +90,8 @@ std::vector<Balance> read_balance(sqlite::Connection& database) {
       if (!row.is_null(4)) override_trial_seconds(protocol, row.real(4));
       count_uses(protocol, slots, balance);
     } catch (const base::Error&) {
-      // The protocol was written for another version: slot_uses stays empty, and describe() reports it.
+      // This version of the program cannot read the protocol: slot_uses stays empty, and describe() reports
+      // that.
     }
     out.push_back(std::move(balance));
   }

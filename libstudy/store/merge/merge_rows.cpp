@@ -165,8 +165,8 @@ const Table session_tables[] = {
                     "make a sound copy with vip-study salvage, or leave this database out");
 }
 
-/// Copies the rows of one table that belong to `parent` (?1 in table.rows), with new row numbers. changed:
-/// new values by column.
+/// Copies the rows of one table that belong to `parent` (?1 in table.rows), with new row numbers. changed: by
+/// column name, values that replace the row's values.
 void copy_rows(Connection& source, Connection& target, const Table& table, std::int64_t parent,
                RowNumbers& numbers, const std::map<std::string, std::string>& changed = {}) {
   const std::string name = table.name, key = table.key, columns = listed(columns_of(name));

@@ -15,8 +15,9 @@
 
 namespace study {
 
-/// Number of trials of stimulus blocks that show a cell of a protocol with factors: all, and those answered.
-/// A trial whose cell an adaptive procedure has yet to choose counts for the first cell of its track.
+/// For a cell of a protocol with factors: the number of trials of stimulus blocks that show it, and how many
+/// of them are answered. A trial whose cell an adaptive procedure has yet to choose counts for the first cell
+/// of its track.
 struct CellCount {
   std::vector<std::pair<std::string, std::string>> levels;  ///< factor and level
   std::int64_t trials = 0, answered = 0;

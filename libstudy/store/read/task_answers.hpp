@@ -18,7 +18,7 @@
 
 namespace study {
 
-/// One stimulus of a trial, with its showing that counts.
+/// One stimulus of a trial, with the timing of its showing that counts.
 struct TaskShowing {
   StimulusSpec what;
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
@@ -29,8 +29,8 @@ struct TaskShowing {
   stats::FpsMoments realised;
   double longest_ms = 0;  ///< longest frame interval
   std::int64_t late = 0;  ///< number of late frames
-  /// The solver's active fraction of particles and tau, means over the frames; none: not measured, or the
-  /// method has none.
+  /// Fraction of the particles that the solver computed, and the tolerance tau, frames/s; both means over the
+  /// frames. None: not measured, or the method has no such value.
   std::optional<double> active_fraction, tau_fps;
   int cell = 0;  ///< index into Design::cells
 };

@@ -42,7 +42,8 @@ namespace {
 struct EarlierShape {
   Shape shape;
   std::size_t now = 0;  ///< index of the table's current shape
-  /// By current column: index of the earlier column that is copied; none: the value is NULL.
+  /// For each current column: index of the earlier column that is copied to it; none: the column becomes
+  /// NULL.
   std::vector<std::optional<std::size_t>> source;
 };
 
