@@ -1,4 +1,5 @@
--- Step 1. Every column ends in a comment: the data dictionary of an export is made of these lines.
+-- Step 1. Each column has a comment at the end of its line. Exports make the data dictionary of these
+-- comments.
 
 CREATE TABLE protocol (
   protocol_id INTEGER PRIMARY KEY, -- row number
@@ -88,7 +89,7 @@ CREATE TABLE presentation (
   UNIQUE (trial_id, attempt)
 ) STRICT;
 
--- Times are differences, which take half the room of the clock's own numbers.
+-- Times are stored as differences, which take half as many bytes as the clock's full numbers.
 CREATE TABLE frame (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   frame_index INTEGER NOT NULL, -- from 0
@@ -117,7 +118,7 @@ CREATE TABLE response (
   UNIQUE (trial_id, question_id)
 ) STRICT;
 
--- Append only; neither answers nor free text.
+-- The event log: rows are added, never changed or deleted. It contains neither answers nor free text.
 CREATE TABLE event (
   event_id INTEGER PRIMARY KEY, -- order of events
   session_id INTEGER REFERENCES session, -- session it concerns

@@ -1,5 +1,6 @@
--- Step 2. Sessions of blocks: pages beside trials, pairs, withdrawal, merging. Runs with foreign keys off and checked
--- afterwards, since SQLite changes a CHECK, and keeps the comments of new columns, only by making a table anew.
+-- Step 2. Adds blocks with pages besides trials, pairs of stimuli, withdrawal and merging. Tables are made
+-- anew: SQLite has no other way to change a CHECK and to keep the comments of new columns. Meanwhile foreign
+-- keys are switched off; the program checks them at the end of the step.
 
 CREATE TABLE question_2 (
   question_id INTEGER PRIMARY KEY, -- row number
@@ -15,7 +16,7 @@ CREATE TABLE question_2 (
   UNIQUE (protocol_id, code)
 ) STRICT;
 
--- Which block asks what.
+-- The questions that each block asks.
 CREATE TABLE ask (
   protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol
   block TEXT NOT NULL, -- id of the block
@@ -32,7 +33,8 @@ CREATE TABLE run_2 (
   options TEXT NOT NULL -- options of the command, from which resume rebuilds everything
 ) STRICT;
 
--- A code given twice at different stations is made two by a merge; uid, person and code never change.
+-- If people at different stations have the same participant code, a merge gives them different codes in the
+-- column participant. The columns uid, person and code never change.
 CREATE TABLE session_2 (
   session_id INTEGER PRIMARY KEY, -- row number
   uid TEXT NOT NULL UNIQUE, -- recognises the session in copies of the database
@@ -76,7 +78,7 @@ CREATE TABLE cell (
   PRIMARY KEY (protocol_id, cell)
 ) STRICT, WITHOUT ROWID;
 
--- One row for everything that a session goes through, in order.
+-- One row for each unit of a session, that is each trial and each page.
 CREATE TABLE unit (
   unit_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it belongs to
@@ -130,7 +132,8 @@ CREATE TABLE presentation_2 (
   UNIQUE (trial_id, attempt, interval)
 ) STRICT;
 
--- Every answer, on pages and after trials. Withdrawal deletes rows; words are free text.
+-- All answers, given on pages and after trials. A withdrawal deletes the person's rows. The column words
+-- contains free text.
 CREATE TABLE response_2 (
   response_id INTEGER PRIMARY KEY, -- row number
   unit_id INTEGER NOT NULL REFERENCES unit, -- page or trial it was asked at
@@ -143,7 +146,7 @@ CREATE TABLE response_2 (
   UNIQUE (unit_id, question_id, attempt)
 ) STRICT;
 
--- The experimenter's notes: free text, so apart from the log that is never deleted.
+-- The experimenter's notes. They are free text, so they are not in the event log.
 CREATE TABLE note (
   note_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -152,7 +155,8 @@ CREATE TABLE note (
   words TEXT NOT NULL -- what was noted
 ) STRICT;
 
--- Who withdrew: all that is left of them. It wins over data of the same person in every merge.
+-- People who withdrew. These rows are all that stays of them. A merge deletes all data of a person who has a
+-- row here.
 CREATE TABLE tombstone (
   person TEXT PRIMARY KEY, -- recognises the participant in copies of the database
   participant TEXT NOT NULL UNIQUE, -- participant code
@@ -161,7 +165,8 @@ CREATE TABLE tombstone (
   withdrawn_utc TEXT NOT NULL -- when
 ) STRICT;
 
--- What earlier versions wrote: every trial was one stimulus and one answer. Copies of one database get the same uids.
+-- Converts the rows of earlier versions, in which every trial had one stimulus and one answer. The uids are
+-- made from values of the rows, so that copies of one database get the same uids.
 INSERT INTO question_2 SELECT question_id, protocol_id, code, wording, language, 'scale', scale_min, scale_max, anchors, 0
   FROM question;
 INSERT INTO ask SELECT protocol_id, 'trials', row_number() OVER (PARTITION BY protocol_id ORDER BY question_id) - 1, question_id
@@ -204,7 +209,7 @@ ALTER TABLE response_2 RENAME TO response;
 CREATE INDEX session_of_person ON session (person);
 CREATE INDEX unit_of_trial ON unit (trial_id);
 
--- The log of who withdrew goes with them, and no other.
+-- Permits deleting the events of people who withdrew, but no other events.
 DROP TRIGGER event_is_kept;
 CREATE TRIGGER event_is_kept BEFORE DELETE ON event
   WHEN NOT EXISTS (SELECT 1 FROM session s JOIN tombstone t USING (person) WHERE s.session_id = OLD.session_id)

@@ -1,7 +1,8 @@
--- Step 3. What people allowed and where they looked; which exports hold whom; what is still to be cleaned beside the file.
+-- Step 3. Adds participants' permissions, gaze samples, the register of exports with the people in them, and
+-- the list of clean-up work on files beside the database.
 
--- The experimenter's changes to what was answered to the questions gaze_kept and data_shared, and answers given after such a
--- change; the last one counts.
+-- Permissions that the experimenter changed after the consent page (questions gaze_kept and data_shared), and
+-- answers that the participant gave after such a change. The last row counts.
 CREATE TABLE permission_change (
   permission_change_id INTEGER PRIMARY KEY, -- order of changes
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -11,8 +12,9 @@ CREATE TABLE permission_change (
 ) STRICT;
 CREATE INDEX permission_change_of_session ON permission_change (session_id);
 
--- What each session was answered. answered: 1 yes, 0 no, empty: not yet. Any other scale than no = 0 and yes = 1, which earlier
--- versions allowed, cannot be told from a refusal. No row: the protocol does not ask.
+-- The participant's answer about each permission in each session. answered: 1 yes, 0 no, empty: not answered
+-- yet. An answer on a scale other than no = 0 and yes = 1, which earlier versions allowed, is read as no. No
+-- row: the protocol does not ask.
 CREATE VIEW permission_answer AS
   SELECT s.session_id, w.what,
     (SELECT coalesce(r.score = 1 AND q.kind = 'choice' AND q.scale_min = 0 AND q.scale_max = 1, 0)
@@ -21,7 +23,8 @@ CREATE VIEW permission_answer AS
   FROM session s JOIN question q USING (protocol_id)
     JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w ON w.code = q.code;
 
--- What holds for each session. granted: 1 allowed, 0 refused or asked and not answered yet, empty: the protocol does not ask.
+-- The permissions in force in each session. granted: 1 allowed; 0 refused, or asked and not answered yet;
+-- empty: the protocol does not ask.
 CREATE VIEW permission AS
   SELECT s.session_id, s.person, w.what, coalesce(
     (SELECT c.granted FROM permission_change c WHERE c.session_id = s.session_id AND c.what = w.what
@@ -29,11 +32,13 @@ CREATE VIEW permission AS
     (SELECT coalesce(a.answered, 0) FROM permission_answer a WHERE a.session_id = s.session_id AND a.what = w.what)) AS granted
   FROM session s CROSS JOIN (SELECT 'gaze' AS what UNION ALL SELECT 'sharing') w;
 
--- Who may stand in public exports: one refusal in any session counts for the person. granted as above.
+-- The permission of each person to be in public exports. A refusal in one session applies to all sessions of
+-- the person. granted: as in the view permission.
 CREATE VIEW sharing AS
   SELECT person, min(granted) AS granted FROM permission WHERE what = 'sharing' GROUP BY person;
 
--- Samples of where the participant looked, at the rate at which they came. Only of those who allowed it.
+-- Gaze samples, one row for each sample that the source delivered. Recorded only if the participant allowed
+-- it.
 CREATE TABLE gaze (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   sample_index INTEGER NOT NULL CHECK (sample_index >= 0), -- from 0
@@ -46,7 +51,8 @@ CREATE TABLE gaze (
   PRIMARY KEY (presentation_id, sample_index)
 ) STRICT, WITHOUT ROWID;
 
--- Files and folders outside the database that hold data of people, written down before the first byte of them is.
+-- Files and folders outside the database that contain data of people. The row of a file is written before the
+-- file's first byte.
 CREATE TABLE export (
   export_id INTEGER PRIMARY KEY, -- row number
   kind TEXT NOT NULL, -- csv, bids, psych-ds, or the command that wrote it
@@ -64,7 +70,8 @@ CREATE TABLE export_person (
   PRIMARY KEY (export_id, person)
 ) STRICT, WITHOUT ROWID;
 
--- What a withdrawal or a merge has still to do after its commit: written with it, deleted when done.
+-- Work that a withdrawal or a merge must do after its commit. The commit adds the row; it is deleted when the
+-- work is done.
 CREATE TABLE chore (
   chore_id INTEGER PRIMARY KEY, -- order
   kind TEXT NOT NULL CHECK (kind IN ('backups', 'personal', 'rename', 'rewrite')), -- backups, personal: delete a person there; rename: new codes in the personal file; rewrite: this file
@@ -74,7 +81,8 @@ CREATE TABLE chore (
   renamed TEXT -- rename: the new code
 ) STRICT;
 
--- Earlier versions wrote exports into the log alone, without saying who was in them: all who were there.
+-- Earlier versions recorded exports only in the event log, without the people in them. So each of these
+-- exports is registered with all people in the database.
 INSERT INTO export (kind, path, host, sha256, utc, tackled)
   SELECT 'unknown', detail, '', '', min(utc), 0 FROM event WHERE kind = 'export' GROUP BY detail;
 INSERT INTO export_person SELECT DISTINCT e.export_id, s.person FROM export e CROSS JOIN session s;

@@ -1,8 +1,10 @@
--- Step 4. What counts, by one rule; what the solver did in each frame, as it had it; how displays framed scenes.
+-- Step 4. Adds views that define which answers and showings count, the solver's own values for each frame,
+-- and the framing of scenes on displays.
 
--- What each question about each trial was answered with: the last answer, unless the showing that it judged was set aside.
--- attempt: showing that was judged; without an answer the last one played and not set aside; empty: none. why_not: empty where
--- the answer counts. Which of those an analysis then leaves out (timing, straight lines, test data) is said by its plan.
+-- One row for each question about each trial, with the last answer about a showing that was not set aside.
+-- attempt: the showing that the answer judges; without an answer, the last showing that was played and not
+-- set aside; empty: there is none. why_not: why the answer does not count; empty: it counts. The plan of an
+-- analysis may omit further answers (timing, straight-lining, test data).
 CREATE VIEW judgement AS
   SELECT unit_id, trial_id, question_id, place, response_id, attempt, answered, why_not, why_not IS NULL AS counts FROM (
     SELECT u.unit_id, t.trial_id, k.question_id, k.place, r.response_id,
@@ -17,12 +19,14 @@ CREATE VIEW judgement AS
       LEFT JOIN response r ON r.response_id = (SELECT l.response_id FROM response l WHERE l.unit_id = u.unit_id
         AND l.question_id = k.question_id AND l.attempt > t.set_aside ORDER BY l.attempt DESC LIMIT 1));
 
--- The showing by which a trial is known: the first that was judged, where an interruption parted its questions; without an
--- answer the last one played and not set aside.
+-- The showing that represents each trial: the first showing with an answer, because after an interruption a
+-- trial may have answers about several showings. Without an answer, the last showing that was played and not
+-- set aside.
 CREATE VIEW trial_showing AS
   SELECT trial_id, coalesce(min(attempt) FILTER (WHERE answered), max(attempt)) AS attempt FROM judgement GROUP BY trial_id;
 
--- Every showing. judged: 1 where an answer above is about it; counts: 1 where that answer counts.
+-- All showings. judged: 1 if an answer in the view judgement is about the showing. counts: 1 if such an
+-- answer counts.
 CREATE VIEW showing AS
   SELECT presentation_id, trial_id, attempt, interval, judged, why_not, why_not IS NULL AS counts FROM (
     SELECT p.presentation_id, p.trial_id, p.attempt, p.interval, j.trial_id IS NOT NULL AS judged,
@@ -36,7 +40,8 @@ CREATE VIEW showing AS
       LEFT JOIN (SELECT trial_id, attempt, min(why_not) AS why_not FROM judgement WHERE answered GROUP BY trial_id, attempt) j
         ON j.trial_id = p.trial_id AND j.attempt = p.attempt);
 
--- Every answer, on pages and after trials. counts: 1 where it stands in judgement and counts there, or on a page.
+-- All answers, given on pages and after trials. counts: 1 if the answer was given on a page, or is in the
+-- view judgement and counts there.
 CREATE VIEW answer AS
   SELECT response_id, why_not, why_not IS NULL AS counts FROM (
     SELECT r.response_id, CASE WHEN u.trial_id IS NULL THEN NULL
@@ -45,8 +50,9 @@ CREATE VIEW answer AS
     FROM response r JOIN unit u USING (unit_id) LEFT JOIN trial t USING (trial_id)
       LEFT JOIN judgement j ON j.unit_id = r.unit_id AND j.question_id = r.question_id AND j.response_id = r.response_id);
 
--- Earlier versions wrote 1 for the share of particles solved, whatever was solved, and for tau an estimate from the intervals shown,
--- which the onsets still tell: neither was measured where the fluid was computed.
+-- Earlier versions always wrote 1 as the fraction of particles solved, and for tau an estimate from the
+-- intervals shown. The solver measured neither value, so both are dropped here. The estimate of tau can still
+-- be computed from the frames' onsets.
 CREATE TABLE frame_2 (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   frame_index INTEGER NOT NULL, -- from 0
@@ -81,15 +87,17 @@ INSERT INTO frame_2 (presentation_id, frame_index, content_step, simulation_time
 DROP TABLE frame;
 ALTER TABLE frame_2 RENAME TO frame;
 
--- What the solver went by in each showing: means over those of its frames that measured them. Not grouped: SQLite would go through
--- the frames of all showings for each one asked for.
+-- Fraction of particles solved and tau in each showing: means over the frames in which they were measured.
+-- The view has subqueries instead of GROUP BY, with which SQLite would read the frames of all showings for
+-- each showing that a query selects.
 CREATE VIEW solving AS
   SELECT presentation_id,
     (SELECT avg(active_fraction) FROM frame f WHERE f.presentation_id = p.presentation_id) AS active_fraction,
     (SELECT avg(tau_fps) FROM frame f WHERE f.presentation_id = p.presentation_id) AS tau_fps
   FROM presentation p;
 
--- A refused consent is a state of its own. Views and references name the table all the while.
+-- Adds the state 'refused' for a session without consent. legacy_alter_table keeps the table's name in views
+-- and references while the table is made anew.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE session_2 (
   session_id INTEGER PRIMARY KEY, -- row number
@@ -129,9 +137,10 @@ UPDATE session SET state = 'refused' WHERE state = 'not eligible' AND EXISTS (SE
   WHERE n.session_id = session.session_id AND u.kind = 'consent' AND n.words = 'block ' || u.block);
 CREATE INDEX session_of_person ON session (person);
 
--- How each session's display framed each scene of its protocol: a row for all of its cells that were framed and drawn alike. Rows of
--- a scene with other cells are pictures that were compared though they differ; another row of the same cells is of a display on
--- which the session was resumed. No row: nothing was drawn, or an earlier version, which did not write it.
+-- How the display of each session framed each scene: one row for all cells of the scene with the same framing
+-- and renderer. If a scene has rows with different cells, participants compared pictures that differ. A later
+-- row with the same cells is about the display on which the session was resumed. No row: nothing was drawn,
+-- or an earlier version recorded the session.
 CREATE TABLE framing (
   framing_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -149,7 +158,7 @@ CREATE TABLE framing (
 ) STRICT;
 CREATE INDEX framing_of_scene ON framing (session_id, scene);
 
--- A showing is known by how it was framed.
+-- Adds to each presentation a reference to its framing.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE presentation_2 (
   presentation_id INTEGER PRIMARY KEY, -- row number

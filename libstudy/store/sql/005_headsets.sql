@@ -1,5 +1,6 @@
--- Step 5. Headsets: what was worn, its slots, where the head was and what the eyes' ray was; what answers were given with; how good
--- the gaze is. Views and references name the tables all the while.
+-- Step 5. Adds facts, frame slots and interpupillary distances of headsets, head poses, gaze rays,
+-- validations of the eye tracker, and the input device of each answer. legacy_alter_table keeps the tables'
+-- names in views and references while the tables are made anew.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE session_2 (
   session_id INTEGER PRIMARY KEY, -- row number
@@ -67,7 +68,8 @@ INSERT INTO presentation_2 SELECT *, NULL FROM presentation;
 DROP TABLE presentation;
 ALTER TABLE presentation_2 RENAME TO presentation;
 
--- Every answer, on pages and after trials. Withdrawal deletes rows; words are free text.
+-- All answers, given on pages and after trials. A withdrawal deletes the person's rows. The column words
+-- contains free text.
 CREATE TABLE response_2 (
   response_id INTEGER PRIMARY KEY, -- row number
   unit_id INTEGER NOT NULL REFERENCES unit, -- page or trial it was asked at
@@ -84,7 +86,8 @@ INSERT INTO response_2 SELECT *, NULL FROM response;
 DROP TABLE response;
 ALTER TABLE response_2 RENAME TO response;
 
--- Samples of where the participant looked, at the rate at which they came. Only of those who allowed it.
+-- Gaze samples, one row for each sample that the source delivered. Recorded only if the participant allowed
+-- it.
 CREATE TABLE gaze_2 (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   sample_index INTEGER NOT NULL CHECK (sample_index >= 0), -- from 0
@@ -108,7 +111,8 @@ DROP TABLE gaze;
 ALTER TABLE gaze_2 RENAME TO gaze;
 PRAGMA legacy_alter_table = OFF;
 
--- What the headset of a session was and what it told; another row is of a headset on which the session was resumed.
+-- Facts of a session's headset, as its runtime reports them. A session has another row if the facts changed,
+-- for example because it was resumed on another headset.
 CREATE TABLE headset (
   headset_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -138,8 +142,8 @@ CREATE TABLE headset (
 ) STRICT;
 CREATE INDEX headset_of_session ON headset (session_id);
 
--- Distance between the eyes' places, as the headset draws for it: when a session's first step began, and whenever it was found to have
--- changed by more than 0.2 mm.
+-- Interpupillary distance for which the headset's pictures are drawn: one row at the start of a session, and
+-- one after each change by more than 0.2 mm.
 CREATE TABLE ipd (
   ipd_id INTEGER PRIMARY KEY, -- row number
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
@@ -148,7 +152,7 @@ CREATE TABLE ipd (
 ) STRICT;
 CREATE INDEX ipd_of_session ON ipd (session_id);
 
--- Slots of a headset while a presentation was on: the compositor's periods.
+-- Frame slots of a headset during a presentation. A slot is a period of the headset's compositor.
 CREATE TABLE slot (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   slot_index INTEGER NOT NULL CHECK (slot_index >= 0), -- from 0
@@ -159,8 +163,8 @@ CREATE TABLE slot (
   PRIMARY KEY (presentation_id, slot_index)
 ) STRICT, WITHOUT ROWID;
 
--- Where the head was predicted to be in each slot, in the room as the runtime fixed it (OpenXR's LOCAL space: x right, y up, z back).
--- Motion tells people apart: only of those who allowed gaze to be recorded.
+-- Predicted pose of the head in each slot, in OpenXR's LOCAL space (x right, y up, z back). Motion can
+-- identify a person, so poses are recorded only if the participant allowed recording gaze.
 CREATE TABLE head (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   slot_index INTEGER NOT NULL CHECK (slot_index >= 0), -- slot, as in slot
@@ -176,8 +180,8 @@ CREATE TABLE head (
   PRIMARY KEY (presentation_id, slot_index)
 ) STRICT, WITHOUT ROWID;
 
--- How well the eye tracker told where a target was that the participant was asked to look at: a row for each point of each
--- validation. Only of those who allowed gaze to be recorded.
+-- Accuracy and precision of the eye tracker at each target of each validation, one row for each target.
+-- Recorded only if the participant allowed recording gaze.
 CREATE TABLE gaze_validation (
   session_id INTEGER NOT NULL REFERENCES session, -- session it concerns
   validation INTEGER NOT NULL CHECK (validation >= 1), -- order of validations in the session, from 1

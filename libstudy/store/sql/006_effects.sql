@@ -1,4 +1,5 @@
--- Step 6. Effects as a factor of the design. Views and references name the table all the while.
+-- Step 6. Adds effects as a factor of the design. legacy_alter_table keeps the table's name in views and
+-- references while the table is made anew.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE cell_2 (
   protocol_id INTEGER NOT NULL REFERENCES protocol, -- protocol that shows it

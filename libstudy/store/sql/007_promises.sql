@@ -1,12 +1,15 @@
--- Step 7. What people decided, and what was exported, in full: each section stands by itself.
--- Stations and their clocks. An added column has its meaning in /* */: SQLite writes it into the line of the column
--- before it, where a comment to the end of the line would hide what follows.
+-- Step 7. Adds station numbers, a rule for permissions in merges, and stored labels for exports.
+
+-- Columns for stations and their clocks. The comment of an added column is in /* */, because SQLite writes
+-- the column into the line of the column before it, where a comment to the end of the line would hide what
+-- follows.
 ALTER TABLE session ADD COLUMN station_number INTEGER /* number of the station among those of the study, from 1; it chose the slot and the seed; empty: the station had no number */;
 ALTER TABLE session ADD COLUMN station_count INTEGER /* stations of the study, as this one was told; empty: likewise */;
 ALTER TABLE session ADD COLUMN not_before_utc TEXT /* latest time that stood in the database when the session was planned: the session came after it, whatever its clock says; empty: nothing stood there, or recorded by an earlier version */;
 
--- Which changes of a permission count where copies of a database are merged. No clock decides it: clocks jump. A table made anew keeps
--- the comment of each column; views name it all the while.
+-- Adds columns from which a merge of copies finds the permission changes that count. Times do not decide
+-- this, because clocks can jump. The table is made anew, so that each column keeps its comment;
+-- legacy_alter_table keeps the table's name in views.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE permission_change_2 (
   permission_change_id INTEGER PRIMARY KEY, -- row number
@@ -33,7 +36,7 @@ ALTER TABLE permission_change_2 RENAME TO permission_change;
 PRAGMA legacy_alter_table = OFF;
 CREATE INDEX permission_change_of_session ON permission_change (session_id);
 
--- What each session was answered on its consent pages, as before; answers: how often.
+-- As before, with the additional column answers: how many answers about the permission the session has.
 DROP VIEW permission_answer;
 CREATE VIEW permission_answer AS
   SELECT s.session_id, w.what,
@@ -45,9 +48,10 @@ CREATE VIEW permission_answer AS
   FROM session s JOIN question q USING (protocol_id)
     JOIN (SELECT 'gaze' AS what, 'gaze_kept' AS code UNION ALL SELECT 'sharing', 'data_shared') w ON w.code = q.code;
 
--- What holds for each session. granted: 1 allowed, 0 refused or asked and not answered yet, empty: never asked and never changed.
--- Changes count that no later one supersedes, and the last answer on a page unless a change was made after it. One refusal among
--- them is enough: in a merge neither side knew of the other.
+-- The permissions in force in each session. granted: 1 allowed; 0 refused, or asked and not answered yet;
+-- empty: never asked and never changed. The view uses all changes that no later change supersedes, and the
+-- last answer on a page unless a change was made after it. One refusal among them is enough, because after a
+-- merge they may come from copies that did not know of each other.
 DROP VIEW permission;
 CREATE VIEW permission AS
   SELECT session_id, person, what,
@@ -61,7 +65,8 @@ CREATE VIEW permission AS
       EXISTS (SELECT 1 FROM permission_change c WHERE c.session_id = s.session_id AND c.what = w.what) AS changed
     FROM session s CROSS JOIN (SELECT 'gaze' AS what UNION ALL SELECT 'sharing') w);
 
--- Names of people and protocols in public exports, given once: a label never goes over to somebody else, also not after a withdrawal.
+-- Labels of people and protocols in public exports. A label is assigned once; another person or protocol
+-- never gets it, not even after a withdrawal.
 CREATE TABLE label (
   kind TEXT NOT NULL CHECK (kind IN ('person', 'protocol')), -- what it names
   owner TEXT NOT NULL, -- person: as in session; protocol: its sha256

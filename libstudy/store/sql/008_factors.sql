@@ -1,12 +1,13 @@
--- Step 8. Protocols of format 3: factors of one's own, timing profiles, more kinds of answers.
--- An added column has its meaning in /* */: SQLite writes it into the line of the column before it.
+-- Step 8. Protocols of format 3: adds factors that a protocol defines, timing profiles and more kinds of
+-- answers. The comment of an added column is in /* */, because SQLite writes the column into the line of the
+-- column before it.
 ALTER TABLE cell ADD COLUMN levels TEXT /* levels of the protocol's own factors, as "factor = level", one on a line; empty: a protocol of format 2 */;
 ALTER TABLE cell ADD COLUMN timing TEXT /* timing profile in words; mean_fps and sd_fps are those of its intervals; empty: mean_fps and sd_fps alone */;
 ALTER TABLE presentation ADD COLUMN p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */;
 ALTER TABLE presentation ADD COLUMN hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: an earlier version, which did not write it */;
 ALTER TABLE presentation ADD COLUMN animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */;
 
--- The program lists the kinds of answers; the table no longer does.
+-- Removes the CHECK on the kind of a question: only the program lists the kinds.
 PRAGMA legacy_alter_table = ON;
 CREATE TABLE question_2 (
   question_id INTEGER PRIMARY KEY, -- row number

@@ -1,5 +1,5 @@
--- The schema of this version in one piece. New databases are made from it; older ones are upgraded by the numbered steps,
--- which give the same schema word for word (a test compares them). A new step changes this file as well.
+-- The complete schema of this version, from which new databases are made. The numbered steps upgrade older
+-- databases and give the same schema word for word (a test compares them). A new step changes this file too.
 
 CREATE TABLE protocol (
   protocol_id INTEGER PRIMARY KEY, -- row number
