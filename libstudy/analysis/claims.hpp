@@ -25,7 +25,8 @@ inline const std::vector<std::string> items_without_unrealism{"disorientation", 
 /// None is returned if effects or frame rates vary.
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan);
 
-/// Adds all hypotheses of a task (1 or 2; empty: both) to `left_out` as one entry; nothing if there are none.
+/// Adds one entry with all hypotheses of a task (1 or 2; empty: both) to `left_out`. Adds no entry if the
+/// plan has no hypothesis of this task.
 void leave_out(std::vector<stats::ShownClaims::LeftOut>& left_out, const stats::AnalysisPlan& plan,
                std::optional<int> task, const std::string& reason);
 

@@ -32,7 +32,7 @@ Json json_interval(const std::optional<std::array<double, 2>>& interval) {
 }
 
 int interval_decimals(const std::array<double, 2>& interval, int decimals) {
-  constexpr int most = 8;  // smaller ends are rounding errors of 0
+  constexpr int most = 8;  // a nonzero end below 0.5e-8 is a rounding error of 0
   const auto looks_like_0 = [](double end, int digits) {
     return end != 0 && std::abs(end) <= 0.5 * std::pow(10.0, -digits);
   };

@@ -21,7 +21,7 @@ constexpr std::array repeated_names{"refuse", "warn", "share", "first"};
 constexpr std::array decision_names{"intersection-union", "holm"};
 constexpr std::array tests_names{"paired", "mixed"};
 
-/// Reads a number or "none".
+/// The number under `key`; empty if the key is "none", and `fallback` if the table lacks the key.
 std::optional<double> optional_number(const base::TomlTable& table, const char* key,
                                       std::optional<double> fallback, base::Range range) {
   if (!table.has(key)) return fallback;
@@ -53,8 +53,8 @@ void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules)
   rules.min_answered = table.number_or("min_answered", rules.min_answered, share);
 }
 
-/// The value of `directional` for stats::Directional::Once: the ids of the hypotheses; empty if there are
-/// none.
+/// Text of the key `directional` for stats::Directional::Once: the ids of the hypotheses with once_one_sided,
+/// which are the only ones tested one-sided; "" if the plan has none.
 std::string as_once_frozen(const stats::AnalysisPlan& plan) {
   return ids_with(claims_in_force(plan), &stats::MethodClaim::once_one_sided);
 }
@@ -128,7 +128,7 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   return plan;
 }
 
-/// A hypothesis about methods as declared.
+/// A hypothesis about methods as JSON, as the plan declares it.
 Json claim_json(const stats::MethodClaim& one) {
   return {{"id", one.id},
           {"text", one.text},

@@ -20,10 +20,10 @@ struct PlanInForce {
 };
 
 /// Reads a plan from a TOML file. Only `format` is required; a missing key has its default. A preregistered
-/// file (one with the key `protocols`) has older defaults: `decision` is Holm, `directional` holds for
-/// hypotheses with once_one_sided, `more_than_one_trial` is "refuse". base::Error at file:line:column for an
-/// unknown key, a wrong type or a value out of range. `protocol`: the tables [[hypothesis]] must fit it;
-/// null: their factors, levels and questions are not checked.
+/// file (one with the key `protocols`) has older defaults: `decision` is "holm", only the hypotheses with
+/// once_one_sided are tested one-sided (key `directional`), `more_than_one_trial` is "refuse". base::Error at
+/// file:line:column for an unknown key, a wrong type or a value out of range. `protocol`: the tables
+/// [[hypothesis]] must name its factors, levels and questions; null: these names are not checked.
 PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protocol = nullptr);
 
 /// timing_rule_name() returns a rule's name: "none", "fail" or "degraded". timing_rule_of() returns the rule

@@ -32,7 +32,7 @@ std::size_t factor_index(const Design& design, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// Questions with scores that the trials ask.
+/// The questions that the trials ask and whose answers have scores.
 std::vector<const Question*> scored_questions(const Protocol& protocol) {
   std::vector<std::string> asked;
   for (const Block& block : protocol.blocks)
@@ -274,7 +274,8 @@ std::vector<stats::DeclaredHypothesis> read_hypotheses(const std::vector<base::T
   std::vector<DeclaredHypothesis> out;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     if (tables[i].has("task")) continue;
-    // Read once: each call makes new tables, whose keys were not looked up yet.
+    // tables() is called only once for "compare": each call makes new tables, and a key that is not looked up
+    // in every one of them is reported as unknown.
     const Tables compare = tables[i].tables("compare");
     DeclaredHypothesis one = read_hypothesis(tables[i], compare, confidence);
     for (const DeclaredHypothesis& other : out) {

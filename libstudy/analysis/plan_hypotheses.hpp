@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// What a participant's value of an outcome in a cell is.
+/// The value that an outcome has for one participant in one cell.
 enum class OutcomeValue {
   Mean,        ///< mean of the scores
   Share,       ///< share of the answers that are one choice
@@ -21,8 +21,8 @@ enum class OutcomeValue {
 /// "mean", "share", "comparison", "threshold".
 const char* outcome_word(OutcomeValue value);
 
-/// The value of a question's answers in this design. In pairs with a standard a choice of two is a choice
-/// between the intervals.
+/// The kind of value that the answers to the question have in this design. In pairs with a standard, a choice
+/// with two anchors is a choice between the intervals: OutcomeValue::Comparison.
 OutcomeValue value_of(const Design& design, const Question& question);
 
 /// The score whose share is the outcome: the declared one, or the higher of two. None for
@@ -35,9 +35,9 @@ bool compares_groups(const Design& design, const stats::DeclaredHypothesis& hypo
 /// Indices of the cells that have these levels. Cells of the standard are left out.
 std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesis::Levels& levels);
 
-/// Reads those of the tables [[hypothesis]] that lack the key `task`, which read_method_claims() does not
-/// read. `confidence`: default of `confidence`. `protocol`: its factors, levels and questions
-/// must be those that the tables name; null: they are not checked. base::Error at file:line:column.
+/// Reads those of the tables [[hypothesis]] that lack the key `task`; read_method_claims() reads the others.
+/// `confidence`: default of the tables' key `confidence`. `protocol`: must have the factors, levels and
+/// questions that the tables name; null: these names are not checked. base::Error at file:line:column.
 std::vector<stats::DeclaredHypothesis> read_hypotheses(const std::vector<base::TomlTable>& tables,
                                                        double confidence, const Protocol* protocol);
 
@@ -51,7 +51,7 @@ std::string declared_text(const stats::DeclaredHypothesis& hypothesis);
 /// The levels of a condition: "hitch h50, content dam"; "all cells" without levels.
 std::string condition_text(const stats::DeclaredHypothesis::Levels& levels);
 
-/// A hypothesis as declared.
+/// The hypothesis as JSON, as the plan declares it.
 Json declared_json(const stats::DeclaredHypothesis& hypothesis);
 
 }  // namespace study

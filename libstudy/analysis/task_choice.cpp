@@ -136,7 +136,8 @@ const char* task_title(TaskKind task) {
 
 namespace {
 
-/// True for a protocol of format 3, which vip-stats study analyses. A placement for the PTPE is a pilot.
+/// True for a protocol of format 3, which `vip-stats study` analyses. False if the protocol places frame-rate
+/// settings adaptively for the PTPE: such a protocol is a pilot.
 bool has_own_factors(const TaskProtocol& protocol) {
   if (!protocol.whole || protocol.whole->design.factors.empty()) return false;
   const auto& procedure = protocol.whole->design.procedure;

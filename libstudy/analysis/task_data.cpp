@@ -82,7 +82,7 @@ using study::TaskTrial;
 std::string setting_words(const RunSetting& setting) {
   const auto file = sim::parse_setting_file(setting.text, "setting " + setting.sha256.substr(0, 12));
   const std::string words =
-      sim::to_text(file.setting);  // the first word is the scene in which the setting was chosen
+      sim::to_text(file.setting);  // its first word, the scene in which the setting was chosen, is cut
   return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
 }
 
@@ -159,7 +159,8 @@ class Collector {
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
   }
 
-  /// True for a Reaction without a press: its time is the timeout.
+  /// True if the question measures a reaction time and the participant did not press in time. The answer's
+  /// time is then the timeout.
   bool too_late(const TaskAnswer& answer) const {
     return answer.score == 0 && std::any_of(data_.protocol.questions.begin(), data_.protocol.questions.end(),
                                             [&](const Question& one) {

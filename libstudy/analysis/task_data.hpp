@@ -34,7 +34,7 @@ struct TaskFlow {
   int practice = 0, repeat = 0;
 };
 
-/// A showing that was played, outside of practice.
+/// A showing (one presentation of a stimulus) that was played in a trial other than practice.
 struct TimedShowing {
   TaskShowing shown;
   bool analysed = false;  ///< true if the showing's trial is analysed: answered, not excluded and no repeat

@@ -77,8 +77,8 @@ MeasuredCell judge(const Protocol& protocol, const MeasuredStimulus& measured, i
   return out;
 }
 
-/// Why participants would compare equal stimuli (MeasuredReport::collapse); empty if they would not.
-/// temporal: by cell, true if the cell's method has temporal acceleration.
+/// The reason why participants would compare equal stimuli (MeasuredReport::collapse); empty if they would
+/// not. temporal: by cell, true if the cell's method has temporal acceleration.
 std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<int, bool>& temporal,
                         double refresh_hz) {
   std::set<std::string> methods, levels;

@@ -25,16 +25,17 @@ struct MeasuredCell {
   double tau_min = 0;     ///< smallest tau over windows of up to 30 frames, frames/s (Eq. 11)
   double showing_s = 0;   ///< expected duration of a showing of the cell, s
   bool too_slow = false;  ///< the machine is too slow for the cell; see judge_measured()
-  std::string words;      ///< why the cell is too slow, or a showing would be degraded; empty: neither
+  std::string words;      ///< why the cell is too slow or its showings would be degraded; empty if neither
 };
 
 struct MeasuredReport {
   std::vector<MeasuredCell> cells;  ///< in the order of the design
   bool too_slow = false;            ///< at least one cell is too slow
-  std::string collapse;             ///< why timing `native` would compare equal stimuli; empty if not
+  std::string collapse;             ///< why participants would compare equal stimuli under timing `native`;
+                                    ///< empty if they would not
 };
 
-/// Returns the frame intervals of a setting on the display, ns; empty if the setting has no schedule there.
+/// Returns the frame intervals of a setting on the display, ns; empty if the setting has no schedule on it.
 using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 
 /// Rehearses and judges each measured cell. refresh_hz: rate of the display; 0: frames are shown when ready.

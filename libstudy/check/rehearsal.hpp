@@ -21,8 +21,8 @@ struct MeasuredStimulus {
   StepTimes times;
 };
 
-/// Largest number of content steps in a showing. If frames have neither a schedule nor real-time content, it
-/// is the number of refreshes: at refresh_hz, or at 60 Hz if refresh_hz is 0.
+/// Largest number of content steps in a showing. If the setting has no frame rate and the content does not
+/// play in real time, this is the number of refreshes: at refresh_hz, or at 60 Hz if refresh_hz is 0.
 std::int64_t content_steps(const Protocol& protocol, const FpsSetting& setting, double refresh_hz);
 
 struct Rehearsal {

@@ -135,8 +135,8 @@ PlannedBalance check_balance(const Protocol& protocol) {
   out.planned = protocol.participants;
   out.sequences = sequence_count(protocol);
   std::map<std::vector<int>, int> met;
-  // By groups and pair of cells, the lower index first: people who see this order minus people who see the
-  // opposite order.
+  // Key: sequence of groups, lower and higher index of a pair's cells. Value: number of people who see the
+  // lower cell first, minus number of people who see the higher cell first.
   std::map<std::tuple<std::vector<int>, int, int>, int> difference;
   const int slots = slot_count(protocol);
   const bool dealt = design.assignment == Assignment::Balanced;

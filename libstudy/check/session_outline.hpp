@@ -42,13 +42,16 @@ SessionOutline outline_session(const Protocol& protocol);
 /// One line about a block: "10 trials: stimulus 30 s, ask 5, rest 30 s".
 std::string describe_block(const Protocol& protocol, const BlockOutline& outline);
 
-/// How evenly the assignment spreads the sequences of groups over the planned participants.
+/// How evenly the assignment spreads the sequences of cell groups (groups_met()) over the planned
+/// participants.
 struct PlannedBalance {
   int planned = 0;
-  int sequences = 1;            ///< number of group sequences; 1: groups are not balanced
-  int least = 0, most = 0;      ///< fewest and most people per sequence; 0 under PaperRandom
-  int interval_difference = 0;  ///< largest |people who see AB - people who see BA| of a pair in a sequence
-  int even = 1;                 ///< any multiple of this number of people is balanced
+  int sequences = 1;        ///< number of sequences; 1: groups are not balanced between participants
+  int least = 0, most = 0;  ///< fewest and most people per sequence; 0 under PaperRandom
+  /// Largest difference, over all pairs (A, B) of each sequence, between the number of people who see A first
+  /// and the number of people who see B first.
+  int interval_difference = 0;
+  int even = 1;                        ///< any multiple of this number of people is balanced
   int even_below = 0, even_above = 0;  ///< multiples of `even` nearest to `planned`; 0: none below
 };
 PlannedBalance check_balance(const Protocol& protocol);

@@ -17,11 +17,12 @@ namespace {
 
 constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
-/// Combined with a study's key. It makes the random numbers for person by method independent of those for
-/// persons and trials.
+/// A study's key XOR this constant is the key of the random numbers for the interaction of person and method.
+/// They are thus independent of the random numbers for persons and trials.
 constexpr std::uint64_t by_method_key = 0x6d6574686f64;
 
-/// Random numbers of one participant, by index: 0 to 9 for the person, then ten for each trial.
+/// Random numbers of one participant, by index: 0 to 9 belong to the person, the following ten to the trial
+/// at position 0, the next ten to the trial at position 1, and so on.
 class Draws {
  public:
   Draws(std::uint64_t key, int participant)
@@ -79,8 +80,9 @@ Task1Scatter task1_scatter(const PowerRequest& request) {
   out.method_realism = std::sqrt(method_realism);
   out.method_sickness = std::sqrt(method_sickness);
   out.noise_realism = std::sqrt(latent_variance("--sd", realism - method_realism, rounding));
-  // Half of the variance goes to the single items. The other half goes to person by method and to the report
-  // as a whole. If person by method needs more than its half, the items get less.
+  // Half of the variance `sickness` goes to the single items. The other half goes to the interaction of
+  // person and method and to the report as a whole. If the interaction needs more than this half, the items
+  // get less.
   const double report = std::max(sickness / 2 - method_sickness, 0.0);
   out.noise_sickness = std::sqrt(report);
   out.noise_item = std::sqrt(

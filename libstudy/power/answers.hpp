@@ -15,12 +15,12 @@ namespace study {
 /// Standard deviations of the parts of Task 1's latent answers, in points of the scale. The part of the
 /// participant is equal for all methods, so differences between methods do not depend on it.
 struct Task1Scatter {
-  /// Standard deviation of the part of the participant / standard deviation of the difference between
-  /// methods.
+  /// Standard deviation of the part of the participant, divided by the standard deviation of the difference
+  /// between methods.
   static constexpr double participant_share = 0.6;
   AnswerScale answers = AnswerScale::Likert;
   double participant_realism = 0, participant_sickness = 0;
-  double method_realism = 0, method_sickness = 0;  ///< SD of the effect of person by method
+  double method_realism = 0, method_sickness = 0;  ///< SD of the interaction of person and method
   double noise_realism = 0;
   double noise_sickness = 0;  ///< SD of the part common to the four items of a report
   double noise_item = 0;
@@ -29,8 +29,8 @@ struct Task1Scatter {
 
 /// Scatter for which the difference between two methods' answers has the requested standard deviation, as
 /// long as no answer is cut off at an end of the scale. The variance from rounding, 1/12 per answer
-/// (Sheppard), is included. base::Error if rounding and the effect of person by method alone exceed the
-/// requested standard deviation.
+/// (Sheppard), is included. base::Error if rounding and the interaction of person and method alone exceed
+/// the requested standard deviation.
 Task1Scatter task1_scatter(const PowerRequest& request);
 
 struct Task1Answers {

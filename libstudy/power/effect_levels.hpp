@@ -14,8 +14,9 @@
 namespace study {
 
 /// Makes world "effect" or "null". In "effect" each level is chosen over none with probability
-/// PowerRequest::effect, for all methods. All other pairs, and all pairs in "null", are chosen with .5.
-/// base::Error for another world, for a protocol without level none, or for "effect" without --effect.
+/// PowerRequest::effect, for all methods. In all other pairs, and in all pairs of "null", each of the two is
+/// chosen with probability .5. base::Error for another world, for a protocol without level none, or for
+/// "effect" without --effect.
 World effect_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id);
 
 /// Tests the claim that each level is preferred over none: one t test of the participants' shares for each

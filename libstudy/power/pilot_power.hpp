@@ -33,8 +33,8 @@ struct CoefficientPoint {
   Estimated sd;                 ///< standard deviation of the estimates: the true standard error of one pilot
   Estimated se;                 ///< median of the pilots' standard errors
   Estimated half_width;         ///< median half width of the interval
-  Estimated half_width_wished;  ///< the half width that a share PowerRequest::power of the intervals does not
-                                ///< exceed
+  Estimated half_width_wished;  ///< quantile of the half widths: a share PowerRequest::power of the intervals
+                                ///< has at most this half width
   Estimated coverage;           ///< share of intervals that cover the truth
   /// Share of all pilots whose half width is at most the requested precision. A pilot without an interval
   /// counts as failed.
@@ -49,9 +49,9 @@ struct PilotPoint {
 
 struct PilotPower {
   std::vector<PilotPoint> curve;  ///< one point for each of PowerRequest::n
-  /// The smallest requested n such that, at this n and every larger one, a share of pilots reaches the
-  /// requested precision. The share is PowerRequest::power, for n_for_a_median and n_for_b_median it is one
-  /// half. n_for_both is the larger of n_for_a and n_for_b.
+  /// The smallest requested n such that, at this n and at every larger requested n, a certain share of pilots
+  /// reaches the requested precision. This share is PowerRequest::power; for n_for_a_median and
+  /// n_for_b_median it is one half. n_for_both is the larger of n_for_a and n_for_b.
   std::optional<int> n_for_a, n_for_b, n_for_both;
   std::optional<int> n_for_a_median, n_for_b_median;
 };

@@ -92,7 +92,8 @@ class Drawing {
   double height() const { return top + panel_height + 64; }
 
  private:
-  /// Draws a curve as a line. If it has at most 12 points, each has a bar of two standard errors up and down.
+  /// Draws a curve as a line. If the curve has at most 12 points, each point has a bar that extends two
+  /// standard errors up and down.
   template <class At>
   std::string curve(const Curve& curve, std::size_t index, At at) const {
     std::string moves, marks;

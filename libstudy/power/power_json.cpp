@@ -153,8 +153,8 @@ std::string field(const Json& value) {
   return out + '"';
 }
 
-/// Adds a line for each value of one point of a curve that has a standard error, and for "closed_form" and
-/// "mean_estimate".
+/// Adds CSV lines for one point of a curve: one for each value that has a standard error, and one each for
+/// "closed_form" and "mean_estimate".
 void add_lines(std::string& out, const std::string& lead, const Json& point, const Json& n) {
   for (const auto& [name, value] : point.items()) {
     const bool figure = point.contains(name + "_se");

@@ -136,7 +136,7 @@ Json read_shard(const fs::path& file) {
   return out;
 }
 
-/// base::Error if the shard's studies differ from the request's; it names the first difference.
+/// base::Error if the shard's studies differ from the request's. The error names the first difference.
 void check_studies(const fs::path& file, const Json& there, const Json& here) {
   for (const auto& [name, value] : here.items()) {
     const Json other = there.value(name, Json());

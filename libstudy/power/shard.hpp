@@ -52,7 +52,7 @@ void run_cell(const PowerRequest& request, const PowerCell& cell, const std::fil
 
 /// Collects the outcomes of all cells from their files, in any order. A cell that occurs twice counts once.
 /// base::Error for a file that is no shard, is damaged, has a newer format or holds other studies.
-/// base::Error that names missing cells.
+/// If cells are missing, the base::Error names them.
 StudyOutcomes join_shards(const PowerRequest& request, const std::vector<std::filesystem::path>& files);
 
 }  // namespace study

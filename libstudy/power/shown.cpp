@@ -17,7 +17,8 @@ int index_or_add(std::vector<std::string>& list, const std::string& item) {
   return static_cast<int>(list.size()) - 1;
 }
 
-/// Sets the periods of one participant's trials. Trials of one scene at one n_* form a block.
+/// Sets the periods of one participant's trials. A period is a run of trials of one block, and a block is the
+/// trials of one scene at one n_*.
 void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
   std::vector<int> blocks;
   for (const auto& trial : trials) {

@@ -16,7 +16,7 @@ namespace study {
 struct TestPoint {
   Estimated holds;        ///< share of studies in which the test holds after Holm's correction
   Estimated uncorrected;  ///< share with p < alpha in the direction claimed, without correction
-  Estimated against;      ///< share in which it is significant in the other direction after Holm's correction
+  Estimated against;      ///< share with significance in the other direction after Holm's correction
   Estimated refused;      ///< share of studies in which the test has no p
   /// Power of the uncorrected test by a formula, for normal differences (Task 1) or exactly (Task 2). Empty
   /// if studies differ in the number of participants with both answers, for the mixed model, for levels of
@@ -33,7 +33,8 @@ struct TestPower {
   bool claim_true = false;  ///< true if the test's claim is true in the world
   std::optional<double> margin;
   std::vector<TestPoint> curve;    ///< one point for each of PowerRequest::n
-  std::optional<int> n_for_power;  ///< as in HypothesisPower, for `holds`; empty if the claim is false
+  std::optional<int> n_for_power;  ///< as HypothesisPower::n_for_power, but for TestPoint::holds; empty if
+                                   ///< the claim is false
 };
 
 struct HypothesisPoint {
@@ -61,8 +62,9 @@ struct WorldPower {
 };
 
 /// Task 1 or 2: simulates `studies` with each number of participants. The result does not depend on the
-/// number of threads. A study of 10 is the first 10 participants of the study of 20, which makes curves over
-/// n smooth. All worlds use the same random numbers, which makes differences between worlds precise.
+/// number of threads. A study with 10 participants consists of the first 10 participants of the same study
+/// with 20, which makes curves over n smooth. All worlds use the same random numbers, which makes differences
+/// between worlds precise.
 TaskCounts count_task_studies(const PowerRequest& request, StudyRange studies);
 
 /// Summarises the counts over all studies of the request.

@@ -112,7 +112,9 @@ std::string words_of_null(const MethodClaims& claims) {
   return out;
 }
 
-/// base::Error unless the world's qualities are what words_of_margin() says of the claim.
+/// base::Error unless the world "margin" fits the claim. It fits if all differences of quality between the
+/// claim's methods are 1 (superiority) or -1 (equivalence, non-inferiority), and if the claim's margins are
+/// those of the plan.
 void check_at_margin(const stats::MethodClaim& claim, const Qualities& quality,
                      const stats::AnalysisPlan& plan) {
   const double expected = claim.kind == HypothesisKind::Superiority ? 1 : -1;
@@ -141,7 +143,8 @@ std::string words_of_margin(const MethodClaims& claims) {
          " claims are just false";
 }
 
-/// Which claims are true if differences are positive multiples of those of the qualities.
+/// Says in words which claims are true if the true differences between methods are positive multiples of the
+/// differences of their qualities.
 std::string words_of_effect(const MethodClaims& claims, const Qualities& quality) {
   std::vector<std::string> sure;
   for (const stats::MethodClaim& one : claims) {

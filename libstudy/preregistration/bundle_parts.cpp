@@ -85,16 +85,16 @@ std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& proto
   return out;
 }
 
-/// Comparison of the bundle's date with first answers whose time contradicts the order of the database's
-/// rows.
+/// Comparison of the bundle's date with those first answers whose time contradicts the order of the
+/// database's rows.
 struct ByOrder {
   bool known = true;  ///< true if the bundle is known to be older than each of these answers
   std::string text;
 };
 
 /// If the answer's time is impossible, the session's clock was wrong, and the times of the rows before the
-/// answer decide. Otherwise it is unknown which of the two times is wrong, and the bundle counts as older
-/// only if it is older than the answer's time.
+/// answer decide. Otherwise it is unknown if the answer's time or the time of the rows is wrong, and the
+/// bundle counts as older only if it is older than the answer's time.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

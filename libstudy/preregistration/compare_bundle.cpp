@@ -91,15 +91,15 @@ std::string name_in_bundle(const Json& about, const std::string& sha256) {
   return "";
 }
 
-/// True if the study's protocol is in the bundle. Otherwise adds its differences from the bundle's protocol
-/// of the same name, or that there is none. (A pilot that the bundle lacks adds nothing.)
+/// True if the study's protocol is in the bundle. Otherwise adds to `differences` how it differs from the
+/// bundle's protocol of the same name, or that the bundle has no protocol of this name (except for a pilot).
 bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
     return name_in_bundle(bundle.about, entry.first) == used.name;
   });
   if (planned == bundle.protocols.end()) {
-    // A bundle of Task 1 or 2 need not hold the pilot, which is then exploratory.
+    // A bundle of Task 1 or 2 need not hold the pilot; without it, the pilot is exploratory.
     if (pilot) return false;
     differences.push_back("protocol " + used.name + " was not preregistered");
     return false;
@@ -114,8 +114,8 @@ bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Js
   return false;
 }
 
-/// Compares two objects key by key. Adds each difference, such as "NAME, margin: preregistered 0.5, tested
-/// 0.4". Returns false if there is one.
+/// Compares the keys of `tested` with those of `planned`. Adds each difference to `differences`, such as
+/// "NAME, margin: preregistered 0.5, tested 0.4". Returns false if there is a difference.
 bool same_part(const std::string& name, const Json& planned, const Json& tested, Json& differences) {
   bool same = true;
   for (const auto& [key, value] : tested.items()) {
@@ -128,8 +128,8 @@ bool same_part(const std::string& name, const Json& planned, const Json& tested,
   return same;
 }
 
-/// Compares two fixed_part()s of one hypothesis, test by test. Adds each difference; returns false if there
-/// is one.
+/// Compares two fixed_part()s of one hypothesis, test by test. Adds each difference to `differences`. Returns
+/// false if there is a difference.
 bool same_hypothesis(Json planned, Json tested, Json& differences) {
   const std::string id = tested.at("id");
   std::map<std::string, Json> before;
@@ -154,7 +154,7 @@ bool same_hypothesis(Json planned, Json tested, Json& differences) {
   return same_part(id, planned, tested, differences) && same;
 }
 
-/// True if the hypotheses of a task were tested as the bundle plans. Adds each difference.
+/// True if the hypotheses of a task were tested as the bundle plans. Adds each difference to `differences`.
 bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& results, Json& differences) {
   bool same = true;
   std::map<std::string, Json> planned;
@@ -180,8 +180,8 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
-/// True if the pilot's curve was fitted at the level of the bundle's plan, or if the plan has no level. Adds
-/// the difference.
+/// True if the pilot's curve was fitted at the level of the bundle's plan, or if the plan has no level.
+/// Otherwise adds the two levels to `differences`.
 bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
   const Json pilot = results.value("pilot", Json());
   if (!pilot.is_object() || !pilot.contains("question") || !pilot.at("level").is_number()) return true;

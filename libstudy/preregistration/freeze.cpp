@@ -121,8 +121,8 @@ class Draft {
   explicit Draft(const fs::path& out) : out_(out), path_(base::draft_name(out)) {
     std::error_code failed;
     if (out.has_parent_path()) fs::create_directories(out.parent_path(), failed);
-    // create_directory() returns false for an existing folder or link. It is refused, so that files are
-    // written only into a new folder.
+    // create_directory() returns false if a folder or link of this name exists. This is an error, so that
+    // files are written only into a new folder.
     if (failed || !fs::create_directory(path_, failed))
       throw base::Error(out.string(),
                         "its temporary folder " + path_.string() +

@@ -28,7 +28,7 @@ struct Bracket {
 
 struct Group {
   Field n_star;
-  std::vector<Field> cells;  ///< one for each method, in the order of the methods
+  std::vector<Field> cells;  ///< results of each method, in the order of the methods
   std::vector<Bracket> brackets;
 };
 

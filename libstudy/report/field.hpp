@@ -83,7 +83,7 @@ std::string words(const Field& field);
 /// "yes" or "no".
 std::string yes_no(const Field& field);
 /// An object of counts as "tracked: 26, mouse: 3", without counts of 0. An empty name is printed as "not
-/// said". "none" if no count remains.
+/// said". Returns "none" if all counts are 0.
 std::string counts(const Field& object);
 /// A paragraph with the reason why `field` does not exist; "" if it exists.
 std::string why_not(const Field& field);

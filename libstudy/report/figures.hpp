@@ -18,7 +18,7 @@ inline double room_for(const std::vector<std::string>& names) {
   std::ptrdiff_t longest = 0;
   for (const std::string& name : names)
     longest = std::max(longest, std::count_if(name.begin(), name.end(), [](char byte) {
-                         return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // first byte of a letter
+                         return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // starts a letter
                        }));
   return 8.0 * static_cast<double>(longest);
 }
@@ -42,8 +42,8 @@ svg::Picture scene_lines(const Field& task1, const Field& score);
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title);
 
-/// The share that a pair's test compares with one half: of the answers, or over people if some answered the
-/// pair several times.
+/// The share that a pair's test compares with one half. It is the share of the answers, or, if some people
+/// answered the pair several times, the mean of the people's shares.
 inline Field tested_share(const Field& pair) {
   return pair["by_person"].exists() ? pair["by_person"]["share"] : pair["share"];
 }

@@ -64,8 +64,8 @@ std::string model_of(const Field& pilot) {
 std::string estimates(const Field& pilot) {
   Table table("Estimates of " + pilot_curve + ", intervals over participants",
               {"Estimate", "<i>a</i> [CI], frames/s", "<i>b</i> [CI], s/frame"});
-  // This interval is the solver's. It can be wider than the interval of the direct estimate, which is in the
-  // list of estimators.
+  // The first row has the interval that is written into the solver's file. It can be wider than the interval
+  // of the direct estimate, which is in the list of estimators.
   if (pilot["a"].is_number())
     table.row({"<strong>" + for_solver(pilot) + "</strong>, level " + fixed(pilot["level"], 1),
                a_with_interval(pilot), b_with_interval(pilot)});

@@ -78,7 +78,8 @@ std::string drawn(const Field& entry, const std::string& name, double y) {
 
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title) {
-  // The left margin follows the longest name: with short names the picture fits a narrow screen.
+  // The left margin is only as wide as the longest name needs, so that a picture with short names fits a
+  // narrow screen.
   const double more = std::max(room_for(names), room_for({"score"})) + 8 - left;
   svg::Picture picture{.width = more + left + width + 20, .id = id};
   picture.title = title;

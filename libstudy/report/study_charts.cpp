@@ -17,7 +17,7 @@ struct Scale {
 
 double y_of(double share) { return top + plot_height * (1 - share); }
 
-/// A step of 1, 2 or 5 times a power of ten, for about six marks.
+/// Distance between the marks of an axis of this range: 1, 2 or 5 times a power of ten, for about six marks.
 double step_of(double range) {
   if (!(range > 0)) return 1;
   const double power = std::pow(10.0, std::floor(std::log10(range / 6)));
@@ -51,7 +51,8 @@ std::string curve_line(const Field& track, const Scale& scale) {
   return svg::path(moves, svg::attribute("stroke", svg::colour::blue) + " stroke-width=\"2\" fill=\"none\"");
 }
 
-/// Circles whose area is proportional to the number of trials, but with at least smallest_radius.
+/// A circle at the share of positive answers of each level. Its area is proportional to the number of trials,
+/// but its radius is at least smallest_radius.
 std::string points(const Field& track, const Scale& scale) {
   double most = 1;
   for (const Field& point : track["points"].entries()) most = std::max(most, point["trials"].number());
@@ -103,13 +104,14 @@ namespace {
 
 constexpr double row_height = 22;
 
-/// A name that leaves the points their space; the table below the figure has the whole name.
+/// The name, cut to 44 bytes so that space is left for the points. The table below the figure has the whole
+/// name.
 std::string shortened(const std::string& name) {
   constexpr std::size_t most = 44;
   return name.size() <= most ? name : name.substr(0, most - 3) + "...";
 }
 
-/// Scale of all means and intervals of the cells, from 0 to 1 for shares.
+/// The axis of the cells' values: from 0 to 1 for shares, otherwise wide enough for all means and intervals.
 Scale scale_of_cells(const std::vector<Field>& cells, bool shares) {
   if (shares) return {0, 1};
   Scale out{INFINITY, -INFINITY};

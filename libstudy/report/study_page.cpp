@@ -22,7 +22,6 @@ std::string declared_badge(const Field& hypothesis) {
                                                          : "<span class=\"badge\">Declared</span>";
 }
 
-/// The badge of a table.
 std::string table_badge(const Field& part) {
   return part["exploratory"].yes() ? exploratory_badge()
                                    : "<span class=\"badge\">Outcome of a declared hypothesis</span>";
@@ -172,7 +171,8 @@ std::string tested_section(const Field& root) {
           notes + again.html());
 }
 
-/// Fewer cells need no figure, and the rows of more cells cannot be compared at a glance.
+/// A figure is drawn for 2 to 60 cells. A single cell needs no figure, and the rows of more than 60 cells
+/// cannot be compared at a glance.
 constexpr std::size_t least_cells_drawn = 2, most_cells_drawn = 60;
 
 std::string answers_section(const Field& root) {

@@ -43,7 +43,8 @@ struct CellRun {
   /// State of the water every 1/30 s. The first sample is taken 1/30 s after the gate opens.
   std::vector<WaterSample> samples;
   std::vector<FrameCost> frames;  ///< all frames except the first five, in which buffers grow
-  /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if SweepCell::kept is.
+  /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if SweepCell::kept
+  /// is empty.
   std::vector<KeptPicture> pictures = {};
   double pixels_per_degree = 0;  ///< resolution of the pictures at their centre
   double particles_mean = 0, substeps_mean = 0;

@@ -85,8 +85,9 @@ struct Sweep {
   }
 };
 
-/// A text on cells of the scene that were run on another machine, program or plan: " of MACHINE, program P,
-/// ...; it holds 24 cells of ...". Empty if there are none.
+/// Text for an error: machine, program and options of the request, then the number of cells of the scene for
+/// each other machine, program and options: " of MACHINE, program P, ...; it holds 24 cells of ...". Empty if
+/// there are no other cells.
 std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPlan& plan,
                             const SweepOrigin& origin) {
   const auto named = [](const SweepOrigin& from, double seconds, const std::string& size,
@@ -212,8 +213,8 @@ double most_kinetic(const CellRun& run) {
   return out;
 }
 
-/// Order of convergence of `runs`, which are sorted from coarse to fine. `steps`: step of each run over that
-/// of the first.
+/// Order of convergence of `runs`, which are sorted from coarse to fine. `steps`: each run's particle spacing
+/// or time step, divided by that of the first run.
 ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>& runs,
                        const std::vector<double>& steps, double tank_length_m) {
   ObservedOrder out{of, steps, {}};
@@ -238,8 +239,8 @@ ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>&
   return out;
 }
 
-/// Runs with seed 1 of HiRes' usual setting, with the knob at each of these values. Empty if one of them was
-/// not run.
+/// Runs with seed 1 of HiRes' usual setting, with the knob at each of these values. Empty if one of these
+/// runs is missing.
 std::vector<const CellRun*> refined(const Sweep& sweep, const SweepPlan& plan, sim::SolverKnob knob,
                                     const std::vector<double>& values) {
   std::vector<const CellRun*> out;

@@ -87,11 +87,11 @@ struct Price {
   bool free() const { return ms_low_quartile <= 0 && ms_high_quartile >= 0; }
 };
 
-/// Observed order of convergence of HiRes: slope of log(difference between a run and the next finer one) over
-/// log(step), by least squares.
+/// Observed order of convergence of HiRes: least-squares slope of log(difference between a run and the next
+/// finer run) against log(step).
 struct ObservedOrder {
   std::string of;                    ///< "particle spacing" or "time step"
-  std::vector<double> steps;         ///< step of each run over the first run's
+  std::vector<double> steps;         ///< step of each run, divided by that of the first run
   std::array<double, 3> order = {};  ///< for Front, Centre and Kinetic; NaN if two runs are equal
 };
 
@@ -117,8 +117,8 @@ struct PriceList {
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 
-/// The Pareto front: indices of the settings with a smaller error than every other setting whose mean time is
-/// equal or smaller. Fastest first; settings without this error are left out.
+/// The Pareto front: indices of the settings whose error is smaller than that of every other setting with an
+/// equal or smaller mean time. Fastest first. Settings for which this error is NaN are left out.
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
 /// Cells with seeds 1 to `seeds` of each setting that is on the Pareto front of some error, in the order of

@@ -64,8 +64,8 @@ std::string value_or_rate(sim::SolverKnob knob, double value) {
   return std::isnan(value) ? "following the frame rate" : sim::value_words(knob, value);
 }
 
-/// A text that names the knobs in which the most similar row of the setting's method differs from the
-/// setting.
+/// The reason why no row has this setting. Names the knobs in which the setting differs from the most similar
+/// row of the same method.
 std::string why_no_row(const std::vector<const SweepTable*>& tables, const sim::SolverSetting& setting) {
   const SettingResult* nearest = nullptr;
   std::vector<sim::SolverKnob> least;

@@ -39,7 +39,8 @@ struct SettingPrices {
   std::string why_none;             ///< the reason if `found` is empty
 };
 /// Finds the rows of exactly this setting in the tables of this scene file; the setting's `scene` is ignored.
-/// A knob that is NaN follows the frame rate from frame to frame. No row has such a knob.
+/// NaN as a knob's value means that the knob follows the frame rate from frame to frame. No row has such a
+/// knob.
 SettingPrices prices_of(const SweepTables& tables, sim::SolverSetting setting,
                         const std::string& scene_sha256);
 

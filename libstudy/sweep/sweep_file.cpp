@@ -84,7 +84,7 @@ void recognise(Connection& database, Open how) {
   }
 }
 
-/// The text does not offer to salvage the file, since a sweep can be computed again.
+/// The error does not advise to salvage the file, since a sweep can be computed again.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
   throw base::Error(path.string(), "is damaged or cut short",
                     "name another file, and run the cells of the sweep again into it");
@@ -197,8 +197,8 @@ SweepFile::SweepFile(const std::filesystem::path& path, Open how) {
     refuse_damaged(path);
   }
   database_->execute("PRAGMA foreign_keys = ON");
-  // user_version is 0 if the program that created the file was killed in its first transaction, which SQLite
-  // has now rolled back.
+  // user_version is 0 if the program that created the file was killed in its first transaction. SQLite has
+  // rolled back that transaction when the file was opened.
   if (how == Open::Read && database_->integer("PRAGMA user_version") == 0) refuse(path);
   if (how == Open::Read) return;
   database_->execute("PRAGMA synchronous = FULL");

@@ -15,7 +15,7 @@ using stats::GridNode;
 using stats::ScoreGrid;
 using Polyline = std::vector<ContourPoint>;
 
-constexpr int pieces = 12;
+constexpr int pieces = 12;  // number of parts into which each side of a grid cell is divided
 
 /// A side of a small triangle: the ids of its two corners, the smaller id first. Two neighbouring triangles
 /// have one Side in common.
@@ -38,8 +38,8 @@ GridNode patch(const std::array<GridNode, 4>& corner, double s, double t) {
   return node;
 }
 
-/// The contour in pieces: the point at which it crosses each side (`at`), and for each side the other sides
-/// to which a segment within a triangle leads (`joined`).
+/// The contour as single segments, one within each small triangle that it crosses. `at`: the point at which
+/// the contour crosses a side. `joined`: for each side, the sides that a segment connects with it.
 struct Pieces {
   std::map<Side, ContourPoint> at;
   std::map<Side, std::vector<Side>> joined;

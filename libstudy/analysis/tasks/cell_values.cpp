@@ -60,7 +60,7 @@ ExactMean mean_of_cells(const Sums& sums, int participant, const std::vector<int
   return {sum, static_cast<int>(count)};
 }
 
-/// Cells of a condition. For thresholds, the first cells of its tracks.
+/// Cells of a condition. If the outcome is a threshold: the first cell of each track of the condition.
 std::vector<int> condition_cells(const Design& design, const DeclaredHypothesis& hypothesis,
                                  std::size_t which) {
   std::vector<int> cells = cells_with(design, hypothesis.compare.at(which));
@@ -79,7 +79,8 @@ std::vector<int> in_group(const std::vector<int>& cells, const std::vector<int>&
 
 double constant_of(const DeclaredHypothesis& hypothesis) { return hypothesis.against.value_or(0.5); }
 
-/// Indicators of the levels of factor f among the rows' cells, against the lowest level that occurs.
+/// Adds indicator variables for the levels of factor f in `cells`, which holds the cell of each row. The
+/// reference is the lowest level that occurs; it has no indicator.
 void add_level_terms(std::vector<stats::Predictor>& terms, const Design& design, std::size_t f,
                      const std::vector<int>& cells) {
   std::vector<double> levels;
@@ -102,7 +103,7 @@ std::vector<CellAnswer> cell_answers(const TaskData& data, const Question& quest
     const auto score = score_of(trial, question.id);
     if (!score) continue;
     CellAnswer one{place_in(data.participants, trial.participant), trial.first_cell, {}, 0, *score};
-    bool in_order = true;  // the cell is the first interval
+    bool in_order = true;  // true if one.cell was shown in the first interval
     if (trial.second_cell) {
       one.other = trial.second_cell;
       in_order =

@@ -17,16 +17,17 @@ namespace study {
 /// An answer to one question.
 struct CellAnswer {
   int participant = 0;  ///< index into TaskData::participants
-  /// Index into Design::cells. Pairs with a standard: the comparison. Other pairs: the lower of both.
+  /// Index into Design::cells. Pairs with a standard: the comparison's cell. Other pairs: the cell with the
+  /// lower index.
   int cell = 0;
-  std::optional<int> other;  ///< pairs without a standard: the higher of both
-  double value = 0;  ///< NaN: a choice among labels for which no score is declared whose share is taken
+  std::optional<int> other;  ///< pairs without a standard: the cell with the higher index
+  double value = 0;  ///< NaN for a choice among labels if no score is declared whose share is the outcome
   int score = 0;
 };
 
 /// The analysed answers to the question, in the order of participants, visits and trials. The value is that
 /// of value_of(): the score; 1 or 0 for OutcomeValue::Share; for a choice between the intervals 1 if the
-/// comparison (without a standard: cell `cell`) was chosen, else 0. `positive` as
+/// comparison (without a standard: cell `cell`) was chosen, else 0. `positive`: see
 /// DeclaredHypothesis::positive.
 std::vector<CellAnswer> cell_answers(const TaskData& data, const Question& question,
                                      std::optional<int> positive);
@@ -55,8 +56,9 @@ std::vector<CellAnswer> threshold_values(const TaskData& data, std::span<const P
 std::vector<int> groups_of_people(const TaskData& data);
 
 /// Values of the two conditions. If the factor varies within participants, `a` and `b` have one value for
-/// each participant whose cells include both conditions. If it varies between participants, each has one
-/// value for each participant whose cells include this condition.
+/// each participant whose cells include both conditions. If it varies between participants, `a` has one value
+/// for each participant whose cells include the first condition, and `b` for each whose cells include the
+/// second.
 struct ConditionValues {
   std::vector<stats::ExactMean> a, b;  ///< NaN: an answer about one of the condition's cells is missing
 };

@@ -101,8 +101,8 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// The stimulus's scene file as it is now. Refused if it is missing, if a session did not record this file's
-/// SHA-256, or if the stimulus has a level of effects other than the scene's.
+/// The stimulus's scene, read from its file now. Refused if it is missing, if a session did not record this
+/// file's SHA-256, or if the stimulus has a level of effects other than the scene's.
 stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const ShownStimulus& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)
     return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +

@@ -14,7 +14,7 @@ namespace study {
 /// outer_inner, an interval's ends name_low and name_high. A list of texts is joined by spaces; other lists
 /// are left out. Null is an empty field. Numbers are not rounded. Texts except "-Inf" pass
 /// study::formula_guarded(). There is a column for each field that any line has, in the order of first
-/// appearance; a null whose name is an interval in another line has none of its own. An empty list has the
+/// appearance. A null gets no column if another line has an interval of the same name. An empty list has the
 /// columns `if_empty`.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 

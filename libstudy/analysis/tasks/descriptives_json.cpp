@@ -23,9 +23,9 @@ struct ShownSetting {
   auto operator<=>(const ShownSetting&) const = default;  // NOLINT(modernize-use-nullptr): false positive
 };
 
-/// A line of the table. For a pair it holds both stimuli, sorted by the index of the method in the protocol,
-/// then by frame rate. Only a choice between the two stimuli is independent of their order. For any other
-/// question each order has a separate line.
+/// The key of a line of the table. For a pair it holds both stimuli, sorted by the index of the method in the
+/// protocol, then by frame rate. Only a choice between the two stimuli is independent of their order. For any
+/// other question each order has a separate line.
 struct CellScores {
   std::size_t scene = 0, n_star = 0;
   std::vector<ShownSetting> shown;

@@ -31,8 +31,8 @@ std::vector<int> counted_scores(const Question& question) {
   return out;
 }
 
-/// Adds "n", the number of scores, and "counts", the number of scores from each of counted_scores() to before
-/// the next.
+/// Adds "n", the number of scores, and "counts": for each value of counted_scores(), the number of scores
+/// from this value up to, but not including, the next value.
 void add_counts(Json& json, const Question& question, const Scores& scores) {
   json["n"] = scores.size();
   json["counts"] = Json::array();
@@ -126,7 +126,7 @@ void add_pair_of_n_stars(Json& list, const stats::ScoreTable& table, std::pair<i
 }
 
 /// Median, over the pairs of methods at this n_*, of the standard deviation of the participants' differences.
-/// NaN without any.
+/// NaN if there are no such differences.
 double median_sd(const stats::ScoreAnalysis& analysis, int n_star) {
   Scores sds;
   for (const auto& one : analysis.comparisons) {

@@ -16,8 +16,8 @@ namespace study {
 
 struct ResultsRequest {
   std::filesystem::path database;
-  std::vector<TaskKind> tasks;  ///< kinds of analysis to make; one without a protocol in the database is
-                                ///< listed in Results::missing
+  std::vector<TaskKind> tasks;  ///< kinds of analysis to make; a kind for which the database has no protocol
+                                ///< is listed in Results::missing
   std::string protocol;  ///< the protocol's name, with or without version, or leading digits of its SHA-256;
                          ///< empty: all protocols
   PlanInForce plan;

@@ -99,7 +99,7 @@ std::vector<TestedHypothesis> test_all(const TaskData& data, const stats::Analys
 /// Confidence of a hypothesis's interval. For TOST it is 2 c - 1 at confidence c, since each of its two tests
 /// is one-sided.
 double ci_confidence(const DeclaredHypothesis& one) {
-  constexpr double digits = 1e12;  // 2 x 0.95 - 1 is 0.9, not 0.8999999999999999
+  constexpr double digits = 1e12;  // rounds to 12 decimals: 2 x 0.95 - 1 gives 0.9, not 0.8999999999999999
   return one.test.kind == TestKind::Tost ? std::round((2 * one.test.confidence - 1) * digits) / digits
                                          : one.test.confidence;
 }

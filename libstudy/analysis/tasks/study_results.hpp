@@ -17,13 +17,14 @@ namespace study {
 struct FrozenFacts {
   std::string sha256, frozen_utc;      ///< the bundle's hash and date
   std::vector<std::string> altered;    ///< files that differ from the bundle's manifest
-  std::vector<std::string> protocols;  ///< SHA-256 of the protocols that it holds
+  std::vector<std::string> protocols;  ///< SHA-256 of the protocols in the bundle
 };
 
 struct FactorStudyRequest {
-  std::filesystem::path database;  ///< for its name
+  std::filesystem::path database;  ///< used only for its name, for display
   PlanInForce plan;
-  /// The preregistration whose plan is in force; none: the hypotheses count as declared only.
+  /// The preregistration whose plan is in force. If empty, the hypotheses count as declared, but not as
+  /// preregistered.
   std::optional<FrozenFacts> frozen = {};
   std::optional<Json> since = {};  ///< an earlier document of the same protocol
   std::string since_file = {};     ///< its name for display
@@ -34,7 +35,8 @@ struct FactorStudyRequest {
 const TaskProtocol& factor_protocol(const TaskStudy& study, const std::string& by,
                                     const std::string& database);
 
-/// The document of schema vip-study/1. base::Error if `since` is not one of this protocol.
+/// The document of schema vip-study/1. base::Error if `since` has another schema or is about another
+/// protocol.
 Json factor_study_json(const TaskStudy& study, const TaskProtocol& protocol,
                        const FactorStudyRequest& request);
 

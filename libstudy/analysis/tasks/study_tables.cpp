@@ -12,11 +12,11 @@ namespace study {
 namespace {
 
 constexpr int curve_points = 61;
-/// A question with more scores lists only those that were given.
+/// For a question with more possible scores than this, only the scores that were given are listed.
 constexpr std::size_t most_counted_scores = 21;
 
-/// n, mean, SD and interval of values of participants. The interval is Student's t. That of shares ends at 0
-/// and 1, and is by Clopper and Pearson if all participants have the share 0, or all 1.
+/// n, mean, SD and interval of values of participants. The interval is Student's t. An interval of shares is
+/// cut off at 0 and 1; it is by Clopper and Pearson if all participants have the share 0, or all have 1.
 Json over_people(const std::vector<double>& values, double confidence, bool shares = false) {
   Json json{{"n", values.size()}, {"mean", Json()}, {"sd", Json()}, {"ci", Json()}};
   if (values.empty()) return json;
@@ -93,7 +93,7 @@ Json cell_entry(const Design& design, const Question& question, const CellKey& k
   return json;
 }
 
-/// What a participant's value is, for display.
+/// Describes in words, for display, the value that each participant contributes.
 std::string value_words(const Design& design, const Question& question) {
   if (!traits_of(question.kind).labelled) return "mean score";
   if (design.pairs && question.anchors.size() == 2)

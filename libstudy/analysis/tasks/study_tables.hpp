@@ -17,9 +17,9 @@ Json design_json(const Design& design);
 /// Analysed participants by group of the between-subject factors; empty without such a factor.
 Json groups_json(const TaskData& data);
 
-/// Each question in each cell with answers: participants, trials, and over participants mean, SD and interval
-/// of their means; counts of each score. `declared`: outcomes of declared hypotheses; the tables of other
-/// questions are exploratory.
+/// One entry for each question. Its "cells" has an entry for each cell, or pair of cells, with answers:
+/// numbers of participants and trials; mean, SD and interval of the participants' means; counts of each
+/// score. `declared`: ids of the questions in declared hypotheses; other questions are marked as exploratory.
 Json answers_by_cell_json(const TaskData& data, double confidence, const std::vector<std::string>& declared);
 
 /// Threshold and shape of each track of each participant; by track the mean threshold over participants, the

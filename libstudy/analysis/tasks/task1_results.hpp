@@ -39,7 +39,8 @@ std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::v
 /// No hypothesis is tested if effects are a factor, or if an item of realism or cybersickness is not asked.
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// Tests only the hypotheses whose methods the protocol shows. Used by the sensitivity analysis.
+/// Tests the hypotheses whose methods the protocol shows, and computes nothing else. Used by the sensitivity
+/// analysis.
 std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan);
 
 }  // namespace study

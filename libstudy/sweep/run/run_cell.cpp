@@ -165,8 +165,8 @@ CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend ba
     if (keeper && keeps_picture(sample)) {
       const bool masks = is_reference(cell.setting) && sample % 3 == 0;
       out.pictures.push_back(keeper->keep(*fluid, frame, 1.0 / rate, masks));
-      // Draws the timed picture once more, without timing. Its OpenGL buffers are then used again between the
-      // stored picture and the next timed frame.
+      // Draws the timed picture once more, without timing, so that the stored picture's OpenGL buffers are
+      // not the last ones used before the next timed frame.
       if (pictures_of_cell) pictures_of_cell->draw(*fluid);
     }
     const auto report = fluid->report();

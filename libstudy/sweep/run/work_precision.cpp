@@ -19,7 +19,7 @@ constexpr const char* grid = R"( stroke="#ddd" fill="none")";
 constexpr const char* dashed = R"( stroke="#555" fill="none" stroke-dasharray="5 4")";
 constexpr const char* middle = R"( text-anchor="middle")";
 
-/// Frame rates, in frames/s, whose frame times are marked by dashed lines.
+/// Frame rates, in frames/s, whose frame periods are marked by dashed lines.
 constexpr std::array<double, 3> frame_rates{120, 90, 60};
 
 struct Look {
