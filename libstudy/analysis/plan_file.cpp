@@ -169,7 +169,7 @@ const char* timing_rule_name(stats::TimingRule rule) { return timing_names[stati
 stats::TimingRule timing_rule_of(const std::string& name) {
   const auto at = index_of_name(timing_names, name);
   if (at == timing_names.size())
-    throw base::Error("timing rule", "\"" + name + "\" is no such rule", "use none, fail or degraded");
+    throw base::Error("timing rule \"" + name + "\"", "does not exist", "use none, fail or degraded");
   return static_cast<stats::TimingRule>(at);
 }
 

@@ -85,7 +85,8 @@ void read_compare(const base::TomlTable& table, const Tables& compare, DeclaredH
     return;
   }
   if (table.has("against"))
-    table.fail("against", "stands beside two conditions", "remove it, or name one condition in compare");
+    table.fail("against", "does not apply to a comparison of two conditions",
+               "remove it, or name one condition in compare");
   const auto names = [](const DeclaredHypothesis::Levels& levels) {
     std::vector<std::string> keys;
     for (const auto& [factor, level] : levels) keys.push_back(factor);

@@ -159,7 +159,7 @@ std::string words_of(const PowerCell& cell) { return cell.key + " (" + to_text(c
   if (missing > most_named) names += fmt::format(" and {} more", missing - most_named);
   throw base::Error("vip-stats power merge",
                     fmt::format("{} of {} cells are missing: {}", missing, cells.size(), names),
-                    "run each with --cell KEY --out SHARD, and name its file too");
+                    "run each with --cell KEY --out SHARD, and name these files as well");
 }
 
 /// Collects the outcomes of the request's cells from shards.

@@ -131,12 +131,13 @@ TEST_F(BudgetChoice, WhereNothingKeepsItTheNearestIsNamed) {
   EXPECT_THAT([&] { choose(4, 5, 9); },
               ThrowsMessage<base::Error>(HasSubstr("--budget 4ms: is met by no setting of the sweep. Nearest "
                                                    "is HiRes, n_* 512: 5.00 ms in 95 % of its frames, 1.00 "
-                                                   "more\n  mend: allow 5.00ms")));
+                                                   "ms above the budget\n  mend: allow 5.00ms")));
   EXPECT_TRUE(run_anew.empty());
   EXPECT_THAT(
       [&] { choose(10, 12, 14); },
       ThrowsMessage<base::Error>(HasSubstr(
-          "when measured anew. Nearest is HiRes, n_* 512: 12.00 ms in 95 % of its frames, 2.00 more")));
+          "when measured anew. Nearest is HiRes, n_* 512: 12.00 ms in 95 % of its frames, 2.00 ms above the "
+          "budget")));
 }
 
 class BudgetE2e : public test::TableTest {};

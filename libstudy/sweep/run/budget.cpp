@@ -76,7 +76,7 @@ sim::SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>
   throw base::Error(
       fmt::format("--budget {:.4g}ms", request.budget_ms),
       fmt::format("is met by no setting of the sweep{}. Nearest is {}: {:.2f} ms in 95 % of its frames, "
-                  "{:.2f} more",
+                  "{:.2f} ms above the budget",
                   when, who, ms, ms - request.budget_ms),
       fmt::format("allow {:.2f}ms, or sweep smaller sizes (--n-star)", std::ceil(ms * 100) / 100));
 }
@@ -114,7 +114,8 @@ double parse_budget(const std::string& words) {
   const char* const end = words.data() + words.size();
   const auto [rest, problem] = std::from_chars(words.data(), end, out);
   if (problem != std::errc{} || std::string_view(rest, end) != "ms" || !(out > 0) || !(out < 1e6))
-    throw base::Error("--budget " + words, "is not a frame time", "write it as 11.1ms");
+    throw base::Error("--budget " + words, "is not a frame time in ms",
+                      "write a positive number with its unit, such as 11.1ms");
   return out;
 }
 
