@@ -20,8 +20,8 @@ inline constexpr const char* no_choice_of_pair =
 inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
 /// Returns the plan's hypotheses of Task 1 if the protocol shows methods one by one and asks for realism and
-/// cybersickness, those of Task 2 if it asks for a choice between pairs of methods. Every hypothesis that is
-/// not returned is listed in `left_out` with the reason, such as a method that the protocol does not show.
+/// cybersickness, and those of Task 2 if it asks for a choice between pairs of methods. Every hypothesis that
+/// is not returned is listed in `left_out` with the reason, such as a method that the protocol does not show.
 /// None is returned if effects or frame rates vary.
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan);
 

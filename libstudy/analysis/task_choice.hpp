@@ -16,7 +16,7 @@ namespace study {
 enum class TaskKind {
   Pilot,  ///< one method under several frame rates, rated on a scale
   Task1,  ///< methods shown one by one, rated for realism
-  Task2,  ///< pairs of methods, with a choice of one
+  Task2,  ///< methods shown in pairs, with a choice between the two
   Own  ///< any other design: its answers are described; `vip-stats study` tests hypotheses of a design with
        ///< factors
 };

@@ -74,8 +74,8 @@ struct Report {
 /// indices of scenes, n_* and methods refer to the lists in `protocol`.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
-  TaskProtocol
-      protocol;  ///< its sessions without those counted in flow.test_left_out and flow.simulated_left_out
+  /// The protocol. Its sessions lack those that flow.test_left_out and flow.simulated_left_out count.
+  TaskProtocol protocol;
   std::vector<SetAside> set_aside;
   bool test_data = false;                 ///< true if test data are analysed, since there are no real data
   std::vector<std::string> participants;  ///< codes of the participants with an analysed answer

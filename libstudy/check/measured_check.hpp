@@ -43,10 +43,11 @@ using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 /// A cell with a requested frame rate is too slow if the machine's frame rate without waiting is below it.
 /// The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals
 /// skips this check. A cell without a requested rate (TimingSource::Native) is too slow if the machine's
-/// frame rate is below fps_min. A cell with a showing of one frame is not judged. Under Native on a display
-/// with a fixed refresh, MeasuredReport::collapse is set if all cells reach 98 % of the refresh rate, unless
-/// the cells have one method and differ in effects. MeasuredReport::collapse is also set if the design has
-/// accelerated methods but tau never falls below zero in their cells: these methods then never accelerate.
+/// frame rate is below the protocol's fps_min. A cell with a showing of one frame is not judged. Under Native
+/// on a display with a fixed refresh, MeasuredReport::collapse is set if all cells reach 98 % of the refresh
+/// rate, unless the cells have one method and differ in effects. MeasuredReport::collapse is also set if the
+/// design has accelerated methods but tau never falls below zero in their cells: these methods then never
+/// accelerate.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 

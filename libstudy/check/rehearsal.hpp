@@ -16,8 +16,8 @@ struct StepTimes {
 
 /// Measured times of one stimulus on this machine.
 struct MeasuredStimulus {
-  std::vector<int> cells;  ///< cells that show it, indices into Design::cells, ascending
-  bool temporal = false;   ///< its method has temporal acceleration
+  std::vector<int> cells;  ///< cells with this stimulus: indices into Design::cells, ascending
+  bool temporal = false;   ///< true if the method has temporal acceleration
   StepTimes times;
 };
 

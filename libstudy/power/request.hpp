@@ -24,7 +24,7 @@ PowerKind power_kind(const Protocol& protocol, const stats::AnalysisPlan& plan =
 /// The answers that simulated people give in Task 1.
 enum class AnswerScale {
   Likert,     ///< scores rounded to whole numbers and limited to the question's scale
-  Continuous  ///< scores neither rounded nor limited; the closed forms hold exactly for them
+  Continuous  ///< scores neither rounded nor limited; TestPoint::closed_form is exact for them
 };
 
 /// Task 1: share, from 0 to 1, of the variance of one person's answers that is due to the interaction of

@@ -32,7 +32,7 @@ std::string to_text(const PowerCell& cell);
 
 /// All cells of a request, sorted by n and study. A cell simulates about 100,000 participants in at most
 /// 10,000 studies; about 5,000 participants if the plan uses the mixed model, which is slower. So a cell
-/// takes at most minutes.
+/// takes a few minutes at most.
 std::vector<PowerCell> power_cells(const PowerRequest& request);
 
 /// Outcomes of simulated studies: counts for Task 1 or 2, estimates for a pilot.

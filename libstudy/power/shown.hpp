@@ -21,7 +21,7 @@ struct ShownFactors {
   std::vector<std::string> methods;            ///< treatment_name(): method, and its level of effects
   std::vector<Place> cells;                    ///< scene, n_* and method of each of Design::cells
   std::vector<std::string> effects;            ///< levels of the factor; empty if effects are not a factor
-  std::vector<stats::FactorPlace> treatments;  ///< effects and method of each of `methods`
+  std::vector<stats::FactorPlace> treatments;  ///< indices of effects (level) and method (rest) of `methods`
 };
 
 struct ShownTrial {

@@ -32,7 +32,7 @@ Estimated share_of(std::int64_t k, int n);
 /// Mean of at least two values.
 Estimated mean_of(std::span<const double> values);
 /// Sample quantile of at least two values. Its standard error is half the distance between two order
-/// statistics: those one binomial standard deviation of the rank below and above.
+/// statistics, whose ranks are one binomial standard deviation below and above the quantile's rank.
 Estimated quantile_of(std::span<const double> values, double share);
 
 /// Counts of one test over simulated studies of Task 1 or 2. All are whole numbers, so a sum depends neither
@@ -63,7 +63,7 @@ using TaskCounts = std::vector<std::vector<HypothesisCount>>;
 /// Counts of one study. `claims`: for each test, true if the test's claim is true in the simulated world.
 HypothesisCount count_hypothesis(const stats::Hypothesis& hypothesis, const std::vector<bool>& claims);
 
-/// Adds counts of the same request over other studies.
+/// Adds to `sum` the counts of the same request over other studies.
 void add(TaskCounts& sum, const TaskCounts& other);
 
 }  // namespace study

@@ -12,7 +12,8 @@ namespace study::report {
 /// another schema.
 std::string results_page(const base::Json& results);
 
-/// The page of a study with factors, from a document of schema vip-study/1, made in the same way.
+/// Renders a JSON document of schema vip-study/1 (a study with factors) as an HTML page of the same kind.
+/// base::Error for another schema.
 std::string factor_study_page(const base::Json& results);
 
 }  // namespace study::report

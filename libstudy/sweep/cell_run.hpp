@@ -27,7 +27,7 @@ std::vector<std::uint8_t> from_bits(const std::string& bits, std::size_t pixels)
 struct WaterSample {
   double time_s = 0;     ///< time since the gate opened
   double front_m = 0;    ///< position of the water's front: 99 % of the mass has a smaller x
-  double centre_m[3]{};  ///< centre of mass
+  double centre_m[3]{};  ///< centre of mass: x, y, z
   double kinetic_j_kg = 0;
   double density_error = 0;  ///< mean over the particles of max(rho / rho_0 - 1, 0)
   double density_max = 0;    ///< largest rho / rho_0

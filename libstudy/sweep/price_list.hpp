@@ -81,7 +81,7 @@ struct Price {
   double ms = 0;  ///< change of the mean time of a frame
   /// Quartiles of the change in time between frames at the same instant, in ms.
   double ms_low_quartile = 0, ms_high_quartile = 0;
-  /// Change of each error, over all pairs of a seed before and a seed after.
+  /// Change of each error, over all pairs of one run before and one run after the change of the knob.
   std::array<Spread, sweep_error_count> errors = {};
   /// True if 0 lies between the two quartiles: the change of time is within the variation between frames.
   bool free() const { return ms_low_quartile <= 0 && ms_high_quartile >= 0; }

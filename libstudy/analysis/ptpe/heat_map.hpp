@@ -22,7 +22,7 @@ struct HeatMap {
   std::vector<stats::ContourPoint> points;  ///< points of the contour, to which the contour's curve is fitted
   /// Curve fitted without the assumption of an exponential, by ascending delta; empty: not drawn.
   std::vector<stats::ContourPoint> free_curve;
-  double a = 0, b = 0;  ///< of the curve mu = a exp(b delta); a in frames/s, b in s/frame
+  double a = 0, b = 0;  ///< coefficients of the curve mu = a exp(b delta): a in frames/s, b in s/frame
   std::array<double, 2> a_ci{}, b_ci{};
   double confidence = 0.95;
   /// JSON pointers to the list of cells and to the estimate in the results. The figure's numbers carry them

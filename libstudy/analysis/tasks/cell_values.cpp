@@ -38,8 +38,9 @@ Sums sums_of(std::span<const CellAnswer> answers) {
   return out;
 }
 
-/// The mean of the participant's means in the cells, as a sum and a count if the common denominator is at
-/// most 1,000,000. NaN if a cell has no answer.
+/// The mean of the participant's means in the cells. It is an exact fraction of a sum and a count if their
+/// common denominator is at most 1,000,000, otherwise a rounded number with count 1. NaN if a cell has no
+/// answer.
 ExactMean mean_of_cells(const Sums& sums, int participant, const std::vector<int>& cells) {
   constexpr long long largest = 1'000'000;
   long long common = 1;

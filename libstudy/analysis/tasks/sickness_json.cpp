@@ -33,7 +33,7 @@ Json change_json(const stats::SicknessChange& change) {
 }
 
 /// One person's mean score before and after, over the sessions that have both scores. If no session has both,
-/// each mean is over the sessions that have this score.
+/// `before` is the mean over the sessions with a score before, and `after` over those with a score after.
 struct Occasions {
   stats::ExactMean before, after;
 };

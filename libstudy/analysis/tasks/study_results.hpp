@@ -13,7 +13,7 @@
 
 namespace study {
 
-/// What a preregistration says about a study.
+/// Facts about a preregistration (bundle) that the results of a study need.
 struct FrozenFacts {
   std::string sha256, frozen_utc;      ///< the bundle's hash and date
   std::vector<std::string> altered;    ///< files that differ from the bundle's manifest
