@@ -23,7 +23,8 @@ struct RefreshCheck {
   double refresh_hz = 0;                 ///< refresh rate used for schedules: nominal_refresh(asked_hz)
   std::vector<RefreshVerdict> verdicts;  ///< one per setting, in the order of checked_settings()
   int exact = 0, approximate = 0, unreachable = 0;
-  double distance = 0;  ///< mean RefreshVerdict::distance of the reachable settings, frames/s; 0: none
+  /// Mean RefreshVerdict::distance of the reachable settings, frames/s; 0 if no setting is reachable.
+  double distance = 0;
 };
 
 /// The frame intervals of `setting`, ns, from its verdict in `check`; empty if the setting is not among
