@@ -73,7 +73,7 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   return measure::make_settled(scene, std::move(out));
 }
 
-/// Ratio of the kernel's support radius h (4 r of the first particle) to the rest spacing d.
+/// Ratio of the kernel's support radius h (four times the first particle's radius) to the rest spacing d.
 double h_over_d(const sim::Simulation& fluid) {
   std::vector<sim::RenderParticle> particles;
   fluid.read_particles(particles);

@@ -81,8 +81,8 @@ Outcome run(const HardCase& hard_case, const Setting& setting) {
   return setting.effects.empty() ? outcome : of_stability(outcome);
 }
 
-/// Runs a case; the failed findings as text, empty if the case passed. A setting that the program refuses
-/// counts as failed.
+/// Runs a case and returns its failed findings as text, or an empty text if the case passed. A setting that
+/// the program refuses counts as failed.
 std::string failure(const HardCase& hard_case, const Setting& setting) {
   try {
     return failure(run(hard_case, setting));

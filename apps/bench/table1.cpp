@@ -116,8 +116,8 @@ Plan plan_of(const measure::Table1Options& options) {
   return out;
 }
 
-/// Writes the output files after the pictures of each scene and size, and again after its film, so that an
-/// interrupted run has stored the finished parts.
+/// For each scene and size, writes the output files after the pictures and again after the frames of
+/// SSIM-cumul and flicker, so that an interrupted run has stored the finished parts.
 void run_table1(const measure::Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},

@@ -53,8 +53,8 @@ CLI::Validator number_in(double low, double high);
 /// Accepts texts of at most this many bytes.
 CLI::Validator text_up_to(std::size_t most_bytes);
 
-/// Throws base::Error if the file cannot be written (base::check_output), when the command line is parsed:
-/// before the work and not after it.
+/// Throws base::Error if the file cannot be written (base::check_output). The check runs when the command
+/// line is parsed, so that the command does not compute a result that it cannot write.
 CLI::Validator output_file();
 
 /// As output_file(), for files in a folder (base::check_output_folder).

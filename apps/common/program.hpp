@@ -16,11 +16,11 @@ namespace apps {
 std::shared_ptr<CLI::App> new_program(const char* description, const char* name);
 
 /// Parses the command line and runs the chosen command. Returns 0 on success and 1 after an error, which is
-/// printed on stderr; without a message if the reader of a pipe has closed it. Returns 2 for a wrong command
-/// line; a missing command also prints the help. Otherwise returns the code that a command throws as
-/// CLI::RuntimeError. Nothing may be printed before the call: run_program() opens /dev/null for closed
-/// standard streams and, unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, restarts the program once with
-/// OMP_WAIT_POLICY=passive.
+/// printed on stderr. If stdout is a pipe whose reader has closed it, returns 1 without a message. Returns 2
+/// for a wrong command line; a missing command also prints the help. Otherwise returns the code that a
+/// command throws as CLI::RuntimeError. Nothing may be printed before the call: run_program() opens /dev/null
+/// for closed standard streams and, unless OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, restarts the program
+/// once with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
 /// The message for an error on stderr. Errors of other libraries have no place and no remedy; the message

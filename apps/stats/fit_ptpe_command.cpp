@@ -34,7 +34,7 @@ struct FitCommand {
   std::string database, out, json, svg, truth, plan;
   std::optional<std::string> exclude;  ///< replaces the plan's rule for timing verdicts
   std::optional<std::uint64_t> seed;   ///< replaces the plan's seed
-  /// Largest half width of the curve's band with which the solver's file is written, as a part of mu.
+  /// Largest half width of the curve's band, as a fraction of mu, with which the solver's file is written.
   double max_width = 0.35;
   bool force = false;
   bool accept_form = false;
@@ -83,7 +83,8 @@ std::string fitted_name(const study::ChosenTask& chosen) {
   return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
-/// Writes the fit as JSON and prints it. With a truth, also reports whether the fit recovered the truth.
+/// Writes the fit as JSON and prints it. If the true model is known (--truth), also reports whether the fit
+/// recovered it.
 void report(const FitCommand& command, const study::PilotFit& fit,
             const std::optional<stats::PtpeModel>& truth) {
   auto json = study::fit_json(fit);
@@ -128,8 +129,9 @@ void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
-/// Writes the record before the solver's file, so that every solver's file is in the record. The lock keeps
-/// the lines of two simultaneous fits; the last line then belongs to the current file.
+/// Appends a line to the record of calibrations before it writes the solver's file, so that the record
+/// contains every solver's file. The lock makes simultaneous fits write one after another, so that no line is
+/// lost and the last line describes the file that remains.
 void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(study::ptpe_file(fit));
@@ -183,7 +185,8 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const stu
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
-/// The protocols and questions to fit, each separately. With output files only one fit is allowed.
+/// The protocols and questions to fit, each separately. If output files are requested, only one fit is
+/// allowed.
 stats::Result<std::vector<study::ChosenTask>> chosen_pilots(const FitCommand& command,
                                                             const study::TaskStudy& study) {
   const auto selection = command.choice.selection(study::TaskKind::Pilot, command.rules);

@@ -98,7 +98,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    // In Task 2 "margin" equals "null". It is made for the methods and margins of the shipped hypotheses.
+    // In Task 2 the world "margin" equals the world "null". Its differences suit only the shipped hypotheses,
+    // so that it is also omitted for other claims.
     if (kind == study::PowerKind::Task2 || !request.plan.plan.claims.empty())
       std::erase(request.worlds, "margin");
     if (!request.protocol.design.effects.empty())

@@ -23,7 +23,8 @@ struct PreregisterCommand {
   std::optional<std::uint64_t> seed;
 };
 
-/// Reads the plan. If it declares hypotheses, they must fit the one given protocol, which has factors.
+/// Reads the plan. A plan that declares hypotheses needs exactly one protocol; the hypotheses are checked
+/// against the protocol's factors.
 stats::AnalysisPlan read_checked_plan(const PreregisterCommand& command) {
   auto plan = study::read_plan(command.plan).plan;
   if (plan.hypotheses.empty()) return plan;

@@ -74,7 +74,8 @@ std::vector<std::string> all_departures(const sim::BakeHeader& found, const sim:
   return out;
 }
 
-/// The first line of the error: the problem without the remedy, which the program applies itself.
+/// The first line of the error: the problem without the remedy, because the program itself makes the bake
+/// again.
 std::string problem_of(const base::Error& error) {
   const std::string text = error.what();
   return text.substr(0, text.find('\n'));

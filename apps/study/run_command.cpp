@@ -118,7 +118,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   return session;
 }
 
-/// Plans a session for each participant. Each takes the slot of the assignment that is least used so far.
+/// Plans a session for each participant. Each session takes the counterbalancing slot that the fewest
+/// sessions have taken so far (study::next_slot).
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
                              std::vector<int> taken) {

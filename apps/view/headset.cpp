@@ -89,14 +89,14 @@ class HeadsetViewer {
         display_.turn();
         continue;
       }
-      display_.take_spoilt();  // clears the cause of a cut: the viewer cuts nothing
+      display_.take_spoilt();  // discards a cause for cutting: the viewer cuts no showing
       const std::int64_t before_ns = display_.now_ns();
       fluid_->prepare(shown.frames);
       recorder_.take();
       recorder_.take_slots();
       display_.render(*fluid_);
       const std::int64_t computed_ns = display_.now_ns() - before_ns;
-      // The frame slot nearest to the due time, or the first slot that can still be reached.
+      // Shows the frame in the slot nearest to the due time, or in the first slot that can still be reached.
       const auto period_ns = std::llround(1e9 / display_.refresh_hz());
       const auto times = display_.present(display_.first_onset(due_ns - period_ns / 2), clock_);
       if (on_ns > 0 && times.predicted_display_ns > on_ns)

@@ -48,7 +48,7 @@ struct PreparedFluid {
   sim::Camera camera;
   std::optional<sim::PtpeFile> ptpe;
   std::unique_ptr<sim::Simulation> fluid;
-  double finest_spacing_m = 0;   ///< 2 r_*
+  double finest_spacing_m = 0;   ///< rest spacing of the finest particles: twice their radius r_*
   bool follows_picture = false;  ///< true: the levels depend on the last picture
   bool follows_rate = false;     ///< true: the solver uses the measured frame rate
   double frame_dt_s = 0;         ///< duration of a frame of the fluid

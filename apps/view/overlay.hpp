@@ -24,8 +24,8 @@ enum class OverlayKind {
   Temperature
 };
 
-/// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active",
-/// "temperature"; base::Error for other names.
+/// Parses one of the names "none", "acuity", "manifold", "temporal", "combined", "saliency", "level",
+/// "speed", "density", "active" and "temperature". base::Error for other names.
 OverlayKind parse_overlay(std::string_view name);
 /// Parses one or more names, separated by commas.
 std::vector<OverlayKind> parse_overlays(std::string_view names);
@@ -37,7 +37,7 @@ const std::vector<std::string>& overlay_titles();
 /// Reads values of the particles of a simulation and paints them over the simulation's last picture.
 class OverlayPainter {
  public:
-  /// The scene gives the range of temperatures. `finest_spacing_m`: spacing of the finest particles, 2 r_*.
+  /// The scene gives the range of temperatures. `finest_spacing_m`: rest spacing of the finest particles.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
       : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
   void paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidPicture& picture, unsigned framebuffer);

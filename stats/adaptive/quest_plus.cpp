@@ -117,7 +117,8 @@ GridEstimate grid_estimate(std::span<const double> values, std::span<const doubl
   for (std::size_t i = 0; i < x.size(); ++i) out.mean += x[i] * w[i] / sum;
   for (std::size_t i = 0; i < x.size(); ++i) out.sd += (x[i] - out.mean) * (x[i] - out.mean) * w[i] / sum;
   out.sd = std::sqrt(out.sd);
-  // Ends of the interval that each value stands for; the outermost are as wide as their inner halves.
+  // Ends of the intervals that the values represent, halfway between neighbours. The first and the last
+  // interval extend equally far to both sides of their value.
   std::vector<double> edge(x.size() + 1, x.front());
   for (std::size_t i = 1; i < x.size(); ++i) edge[i] = (x[i - 1] + x[i]) / 2;
   if (x.size() > 1) edge.front() = 2 * x.front() - edge[1];

@@ -39,7 +39,7 @@ std::optional<double> target_share(const StaircaseRules& rules);
 
 /// State of a track, rebuilt from its responses.
 struct StaircaseTrack {
-  std::vector<double> stimuli;  ///< of each response, and the next one unless the track has ended
+  std::vector<double> stimuli;  ///< stimuli of the responses, then the next stimulus unless `ended`
   std::vector<int> reversals;   ///< indices of responses at which the direction turned
   bool ended = false;
 };

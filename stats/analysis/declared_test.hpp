@@ -50,7 +50,7 @@ struct DeclaredTest {
   /// Tost: the difference lies within -+ this. A one-sided t test: the difference is above -margin (Greater)
   /// or below margin (Less), that is, not inferior. In the unit of the outcome, above 0.
   std::optional<double> margin = {};
-  double confidence = 0.95;  ///< of intervals; Tost has the interval of 2 confidence - 1
+  double confidence = 0.95;  ///< confidence of intervals; for Tost the interval has 2 confidence - 1
 };
 
 /// Result of a declared test. The estimate is that of a - b.
@@ -74,7 +74,7 @@ struct TestOutcome {
 /// comparison with a constant, every value of `b` is the constant. of_groups(): a and b are different
 /// participants. Sums are NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths
 /// of paired values, a margin that is not above 0, a margin with any test but Tost and one-sided t tests, and
-/// Tost without a margin or with a side. Refused as the test itself is.
+/// Tost without a margin or with a side. Refused where the test itself is.
 Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const ExactMean> a,
                                  std::span<const ExactMean> b);
 
@@ -88,7 +88,7 @@ struct AnswerRows {
 
 /// Fits the model of the test (of_answers()) and tests a against b. Random effects: the participant, and for
 /// LinearMixed the participant with the condition. std::invalid_argument for another kind or a margin.
-/// Refused as the fit is.
+/// Refused where the fit is.
 Result<TestOutcome> run_declared(const DeclaredTest& test, const AnswerRows& rows);
 
 }  // namespace stats

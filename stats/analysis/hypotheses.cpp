@@ -226,7 +226,7 @@ FamilyTest test_of(ScoreContrast contrast, const Family& family) {
     case HypothesisKind::NonInferiority:
       return non_inferiority(std::move(contrast), family);
     case HypothesisKind::Superiority:
-    case HypothesisKind::Preference:  // of Task 2
+    case HypothesisKind::Preference:  // occurs only in Task 2
       break;
   }
   return superiority(std::move(contrast), family);

@@ -65,8 +65,8 @@ struct PairedVerdict {
 };
 
 struct Hypothesis {
-  std::string id;     ///< of its claim
-  std::string title;  ///< in words
+  std::string id;     ///< id of its claim
+  std::string title;  ///< the claim in words
   int task = 1;
   HypothesisKind kind = HypothesisKind::Superiority;
   double alpha = 0.05;
@@ -114,9 +114,9 @@ std::vector<Hypothesis> task2_hypotheses(std::span<const MethodClaim> claims,
 /// The hypotheses whose methods a protocol shows, and the reason why each other hypothesis is left out.
 struct ShownClaims {
   struct LeftOut {
-    std::string id;                     ///< or several in short: "A to C"
+    std::string id;                     ///< id of one hypothesis, or several ids in short: "A to C"
     std::string reason;                 ///< "the protocol does not show FovFluid"
-    std::vector<std::string> ids = {};  ///< of the hypotheses
+    std::vector<std::string> ids = {};  ///< ids of all these hypotheses
   };
   std::vector<Hypothesis> claims;
   std::vector<LeftOut> left_out;

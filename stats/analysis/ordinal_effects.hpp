@@ -14,7 +14,7 @@
 
 namespace stats {
 
-/// A method against the reference; larger = higher answers.
+/// Effect of a method relative to the reference method; larger = higher answers.
 struct MethodEffect {
   int method = 0;
   double estimate = 0, se = 0;  ///< logits

@@ -66,7 +66,8 @@ enum class ScoreTests {
 enum class Directional {
   None,  ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
   All,   ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
-  Once,  ///< those with once_one_sided; bundles frozen before the key `directional` existed use this rule
+  Once,  ///< one-sided where once_one_sided is set; bundles frozen before the key `directional` existed use
+         ///< this rule
 };
 
 enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };
@@ -82,7 +83,7 @@ enum class PaperHolds {
 
 /// A hypothesis about methods, as declared in a plan file. Its tests are one family.
 struct MethodClaim {
-  /// The procedure that a paper used for it.
+  /// The procedure by which a paper tested the hypothesis.
   struct Paper {
     std::string rule;  ///< in words
     PaperHolds holds = PaperHolds::Significant;
@@ -100,7 +101,7 @@ struct MethodClaim {
   bool needs_gaze = false;       ///< not testable unless gaze was tracked
   bool once_one_sided = false;   ///< see Directional::Once
   bool larger_families = false;  ///< Task 2: p is also given after Holm over larger families of pairs
-  std::string called = {};       ///< Task 2: what the rule calls the methods `a`; empty: their names
+  std::string called = {};       ///< Task 2: name of the methods `a` in the printed rule; empty: their own
   std::optional<Paper> paper = {};
 };
 
@@ -140,8 +141,8 @@ struct AnalysisPlan {
   /// score.
   std::map<std::string, double> levels = {};
   PilotRules pilot = {};  ///< how to treat reverse coders, drift and lapses in a pilot
-  std::vector<DeclaredHypothesis> hypotheses = {};  ///< of studies with factors (`vip-stats study`)
-  std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of the paper's file
+  std::vector<DeclaredHypothesis> hypotheses = {};  ///< hypotheses of studies with factors
+  std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of plans/paper.toml
 };
 
 }  // namespace stats

@@ -19,7 +19,8 @@ inline constexpr std::array ssq_scales{SsqScale::Nausea, SsqScale::Oculomotor, S
 
 /// "nausea", "oculomotor", "disorientation", "total".
 const char* ssq_name(SsqScale scale);
-/// 9.54, 7.58, 13.92; 3.74 for the total, applied to the three unweighted sums together.
+/// Weight of the scale: 9.54, 7.58, 13.92, and 3.74 for the total, which is applied to the sum of the three
+/// unweighted sums.
 double ssq_weight(SsqScale scale);
 /// The unweighted sum. For the total it is the three sums together, so items of two scales count twice. Empty
 /// if an item of the scale is missing. std::invalid_argument for an answer outside 0 to 3.

@@ -164,7 +164,7 @@ std::vector<Comparison> comparisons(std::span<const PairChoice> choices) {
 
 IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, const AnalysisPlan& plan) {
   IntervalBias out;
-  std::map<int, std::pair<int, int>> people;  // choices of the first interval, answers
+  std::map<int, std::pair<int, int>> people;  // by participant: choices of the first interval, answers
   for (const PairChoice& choice : choices) {
     auto& [first, answers] = people[choice.participant];
     first += choice.first_chosen ? 1 : 0;

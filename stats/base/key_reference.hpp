@@ -17,7 +17,7 @@ struct KeyReference {
   std::string unit = {};  ///< empty: no unit, or the unit is in the page's introduction
 };
 
-/// KeyReference::fallback of a key that only some files need; the column "meaning" says which.
+/// KeyReference::fallback of a key that only some files need; the column "meaning" says which files need it.
 inline constexpr const char* where_needed = "see right";
 
 /// Heading and text above the keys of a table.

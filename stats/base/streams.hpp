@@ -32,7 +32,7 @@ class PlainOutput {
 void print_coloured(const std::string& text);
 
 /// Flushes stdout; base::Error if any of its output could not be written, now or earlier. Returns false,
-/// without an error, if the reader of a pipe has closed it (`| head -1`).
+/// without an error, if stdout is a pipe whose reader has closed it (`| head -1`).
 bool finish_output();
 
 /// Prepares a message for stderr: cuts the middle of lines longer than 1000 bytes, replaces control

@@ -34,7 +34,7 @@ enum class QuantileType {
 };
 
 /// p quantile, 0 <= p <= 1 (std::invalid_argument), by linear interpolation of order statistics (Hyndman and
-/// Fan 1996). Refused as describe() is.
+/// Fan 1996). Refused where describe() is.
 Result<double> quantile(std::span<const double> values, double p, QuantileType type = QuantileType::Linear);
 
 /// Points of a box plot: quartiles of type 7, whiskers to the outermost values within 1.5 interquartile

@@ -26,10 +26,10 @@ void require(bool ok, const char* message) {
 
 void require_df(double df) { require(df > 0, "degrees of freedom must be positive"); }
 
-/// log P(Z <= x) for any x.
+/// log P(Z <= x) of the standard normal Z, for any x.
 double log_normal_lower(double x) { return gsl_sf_log_erfc(-x / std::numbers::sqrt2) - std::numbers::ln2; }
 
-/// d log P(Z <= x) / dx.
+/// d log P(Z <= x) / dx of the standard normal Z.
 double normal_lower_slope(double x) { return gsl_sf_hazard(-x); }
 
 /// P(Z <= t U - ncp) as an integral over y = log U, with Z standard normal and U = sqrt(chi2(df) / df).
@@ -87,8 +87,8 @@ class ChiMixture {
   double t_, df_, ncp_, sign_, log_scale_;
 };
 
-/// P(T <= t) for ncp >> 1, by the trapezoidal rule over the normal variate z. The chi-square probability in
-/// the integrand changes slowly with z.
+/// P(T <= t) of the noncentral t for ncp >> 1, by the trapezoidal rule over the normal variate z. The
+/// chi-square probability in the integrand changes slowly with z.
 double large_ncp_lower(double t, double df, double ncp) {
   if (t <= 0) return 0;
   constexpr double step = 0.25;
@@ -114,8 +114,8 @@ double large_ncp_upper(double t, double df, double ncp) {
 /// log of p / reference, bounded below so that the root finder gets a finite value where p is zero.
 double log_ratio(double p, double reference) { return std::max(std::log(p / reference), -1e6); }
 
-/// P(T >= |t|). For large df GSL's incomplete beta function is only an approximation, so another method is
-/// used.
+/// P(T >= |t|) of Student's t. For large df GSL's incomplete beta function is only an approximation, so that
+/// the integral of ChiMixture is used.
 double student_tail(double t, double df) {
   constexpr double largest_for_beta = 5e4;
   t = std::abs(t);
@@ -146,7 +146,7 @@ double student_p(double t, double df, Alternative alternative) {
 
 namespace {
 
-/// The t > 0 with P(T >= t) = p; requires p < 0.5.
+/// The t > 0 with P(T >= t) = p for Student's t; requires p < 0.5.
 double solve_upper_quantile(double p, double df) {
   // Solves for log t: as a function of log t, the log of the tail is smooth everywhere and nearly linear for
   // large t.

@@ -120,7 +120,8 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
     low = std::min(low, o.mu);
     high = std::max(high, o.mu);
   }
-  std::map<double, double> beyond;  // distance of the curve from the rates shown in log mu, by nominal delta
+  // By nominal delta: distance in log mu between the curve and the frame rates shown; 0 within reach.
+  std::map<double, double> beyond;
   std::vector<double> distances;
   for (const auto& [delta, range] : shown) {
     const double mu = whole->curve.mu(delta);

@@ -58,8 +58,8 @@ Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* o
   return rows;
 }
 
-/// Thresholds c + t_j, with c such that E[Y] = level at location 0 over the population, and the terms of c's
-/// derivatives.
+/// Thresholds theta_j = c + t_j. The log gaps give t_j. c is chosen so that the expected rating E over the
+/// population of participants equals `level` at location 0. Also holds the terms of c's derivatives.
 struct Scale {
   std::vector<double> theta, weight;  ///< weight: -dE/dtheta_j
   double total = 0;                   ///< sum of the weights

@@ -25,17 +25,17 @@ struct PlacementStudy {
   double a = 24, b = 0.02;  ///< true contour, frames/s and s/frame
   PlacementTruth truth = PlacementTruth::Model;
   int people = 16;
-  int trials = 10;  ///< of each person; not for fixed settings, which are all shown once
+  int trials = 10;  ///< trials of each person; without effect on fixed settings, which are all shown once
   bool adaptive = true;
-  PlacementRules rules = {};  ///< adaptive
+  PlacementRules rules = {};  ///< rules of an adaptive study
 };
 
 /// Averages over simulated studies. Each study is analysed by estimate_direct() with the jackknife over
 /// people.
 struct PlacementSummary {
-  int studies = 0, fitted = 0;          ///< fitted: studies with an interval; the rest describes these
-  double a_width = 0;                   ///< mean width of the interval of ln a
-  double b_width = 0;                   ///< mean width of the interval of b, s/frame
+  int studies = 0, fitted = 0;  ///< fitted: studies with an interval; only these enter the fields below
+  double a_width = 0;           ///< mean width of the interval of ln a
+  double b_width = 0;           ///< mean width of the interval of b, s/frame
   double a_covered = 0, b_covered = 0;  ///< shares of the intervals that hold the truth
   double a_bias = 0;                    ///< mean error of a as a share of a
   double form_rejected = 0;             ///< share of studies in which the form test rejects an exponential

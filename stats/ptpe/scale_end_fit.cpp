@@ -47,8 +47,8 @@ struct EndScale {
 
 /// The ratings of one setting at one realised mu and delta.
 struct Group {
-  double root = 0;  ///< 2 sqrt(mu / M)
-  double e = 0;
+  double root = 0;  ///< 2 sqrt(mu / M), where M is the geometric mean of the frame rates
+  double e = 0;     ///< delta minus its mean, in units of delta_unit
   double n = 0, sum = 0;
 };
 

@@ -43,7 +43,8 @@ struct AccuracyOptions {
   std::vector<std::string> shards;
 };
 
-/// Reads the size of the stored pictures, such as "240x135"; empty for "none".
+/// Checks the size of the stored pictures and returns it as text, such as "240x135". Returns an empty text
+/// for "none".
 std::string kept_size(const std::string& words) {
   if (words == "none") return "";
   const auto size = base::parse_picture_size(words, "--pictures");
