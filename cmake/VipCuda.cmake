@@ -1,5 +1,6 @@
-# Decides once whether the CUDA back end is built: VIP_HAS_CUDA is ON or OFF afterwards. AUTO builds it on a machine with an
-# NVIDIA GPU, for that GPU: nvcc takes as long as all the rest, and without a GPU nothing of it could run. ON builds it anywhere.
+# Decides whether the CUDA back end is built, and sets VIP_HAS_CUDA to ON or OFF. VIP_CUDA=AUTO builds the
+# back end only on a machine with an NVIDIA GPU, and for that GPU: nvcc takes as long as the rest of the
+# build, and its code cannot run without a GPU. VIP_CUDA=ON builds the back end on any machine.
 set(VIP_HAS_CUDA OFF)
 set(_wanted ${VIP_CUDA})
 if(VIP_CUDA STREQUAL "AUTO")
@@ -20,7 +21,7 @@ if(NOT _wanted STREQUAL "OFF")
     enable_language(CUDA)
     if(CMAKE_CUDA_COMPILER_VERSION VERSION_GREATER_EQUAL 12.0)
       set(VIP_HAS_CUDA ON)
-      # CMake 3.25 does not know that nvcc 12 takes C++20.
+      # CMake 3.25 does not know the option that selects C++20 in nvcc 12.
       if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
         set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
         set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
@@ -34,7 +35,8 @@ if(NOT _wanted STREQUAL "OFF")
 endif()
 message(STATUS "CUDA back end: ${VIP_HAS_CUDA}")
 
-# vip_cuda_twins(OUT source.cpp ...): one generated .cu for each source, so that nvcc compiles the very text g++ compiles.
+# vip_cuda_twins(OUT source.cpp ...) generates a .cu file for each source, which includes the source, so that
+# nvcc compiles the same text as g++. It sets OUT to the list of these files.
 function(vip_cuda_twins out)
   set(twins)
   foreach(source IN LISTS ARGN)

@@ -1,11 +1,13 @@
-# What the programs need at run time stands in share/vip-lab (base::resource finds it next to the program's bin/).
+# share/vip-lab contains the files that the programs read at run time. base::resource() finds this folder next
+# to the programs' bin/.
 set(_share share/vip-lab)
 install(DIRECTORY data/scenes data/meshes data/paper DESTINATION ${_share}/data)
 install(FILES data/peers.csv DESTINATION ${_share}/data)
 install(DIRECTORY shaders protocols docs DESTINATION ${_share})
 install(DIRECTORY libstudy/store/sql DESTINATION ${_share}/libstudy/store)
 
-# The licences: the project's, the one that GSL gives the programs, and those of the libraries that are compiled into them.
+# Licences: the project's, the GPL-3 (GSL's licence, which applies to programs that are linked with GSL), and
+# those of the libraries that are compiled into the programs.
 set(_doc share/doc/vip-lab)
 install(FILES LICENSE DESTINATION ${_doc} RENAME copyright)
 install(FILES CHANGELOG.md DESTINATION ${_doc})
@@ -24,7 +26,7 @@ endforeach()
 install(CODE "execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/package/man_pages.sh ${CMAKE_BINARY_DIR}/bin
                               \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/man/man1 COMMAND_ERROR_IS_FATAL ANY)")
 
-# cpack -G DEB makes vip-lab_VERSION_ARCHITECTURE.deb of programs that are already built.
+# cpack -G DEB makes vip-lab_VERSION_ARCHITECTURE.deb from programs that are already built; it builds nothing.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME vip-lab)
@@ -37,8 +39,9 @@ set(CPACK_VIP_NATIVE ${VIP_NATIVE})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# libepoxy opens these two at run time, where dpkg-shlibdeps does not see them.
+# libepoxy opens libEGL and libGL at run time, so that dpkg-shlibdeps does not find them.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1")
-# OpenGL without a GPU's driver, the type of the pages, and headsets.
+# Recommended packages: software OpenGL for machines without a GPU driver, the font of a participant's pages,
+# and the loader for OpenXR headsets.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core, libopenxr-loader1")
 include(CPack)

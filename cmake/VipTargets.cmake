@@ -1,50 +1,59 @@
-# vip_flags: what every target of the project is compiled with. Warnings are for who changes the code: they take a tenth of the
-# time, and each later compiler has others. They never reach nvcc.
+# vip_flags: the compile options of every target of the project. Warnings are enabled only with VIP_WERROR,
+# for developers: they take a tenth of the compile time, and each later compiler warns of other things. nvcc
+# gets no warning options.
 add_library(vip_flags INTERFACE)
 target_include_directories(vip_flags INTERFACE ${PROJECT_SOURCE_DIR})
 set(_cxx "$<COMPILE_LANGUAGE:CXX>")
-# The code reads neither errno nor FP traps of <cmath>; NaN and infinity keep their meaning.
+# The code reads neither errno nor floating-point exception flags after calls of <cmath>, so that g++ need not
+# set them. NaN and infinity keep their meaning.
 target_compile_options(vip_flags INTERFACE $<${_cxx}:-fno-math-errno> $<${_cxx}:-fno-trapping-math>)
 set(_unity "$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>")
-# In a unit, which is no main file to g++, a class may hold a type of its own source.
+# Outside the main file g++ warns if a class has a member of a type from an anonymous namespace. In a unity
+# unit the sources are included and so not the main file, and the warning would be a false alarm.
 target_compile_options(vip_flags INTERFACE $<${_unity}:-Wno-subobject-linkage>)
 if(VIP_WERROR)
-  # A local name may be that of a constant of another source of its unit.
+  # In a unity unit a local name may equal the name of a constant in another source. There only -Wshadow=local
+  # is used, which does not warn of such names.
   target_compile_options(vip_flags INTERFACE
     $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<IF:${_unity},-Wshadow=local,$<${_cxx}:-Wshadow>>
     $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
     $<${_cxx}:-Wno-sign-conversion> $<${_cxx}:-Werror>
-    # False alarms of g++ 12 inside std::string (GCC bug 105651).
+    # -Wrestrict gives false alarms in g++ 12 inside std::string (GCC bug 105651).
     $<$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>>:-Wno-restrict>)
 endif()
-# g++ frees memory once it holds 400 MB: a tenth less time for the larger units, which then take up to 1 GB each.
+# g++ collects garbage only when its heap exceeds 400 MB. This shortens the compilation of larger units by a
+# tenth; each then takes up to 1 GB of memory.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(vip_flags INTERFACE "$<${_cxx}:SHELL:--param ggc-min-heapsize=400000>")
 endif()
 if(VIP_NATIVE)
-  # Lists of neighbours have some 40 entries: lanes of 512 bits leave too many for the last, partial step.
+  # Lists of neighbours have about 40 entries. With vectors of 512 bits too many entries would fall into the
+  # last, incomplete vector, so that vectors of 256 bits are preferred.
   target_compile_options(vip_flags INTERFACE $<${_cxx}:-march=native> $<${_cxx}:-mprefer-vector-width=256>)
 endif()
 if(VIP_SANITIZE)
   target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=${VIP_SANITIZE}> $<${_cxx}:-fno-omit-frame-pointer>
-                         # What is found ends the test, undefined behaviour too.
+                         # Every finding ends the test, including undefined behaviour.
                          $<${_cxx}:-fno-sanitize-recover=all>)
   target_link_options(vip_flags INTERFACE -fsanitize=${VIP_SANITIZE})
 endif()
 
 if(VIP_LIBFUZZER)
-  # The libraries carry the coverage that libFuzzer steers by; the entries alone link its main.
+  # The libraries are instrumented for coverage, which guides libFuzzer. Only the fuzz programs link
+  # libFuzzer's main().
   target_compile_options(vip_flags INTERFACE $<${_cxx}:-fsanitize=fuzzer-no-link,address,undefined>
                          $<${_cxx}:-fno-sanitize-recover=undefined>)
   target_link_options(vip_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# vip_precompile(TARGET [HEADERS...]) reads once what most files of a target include. It shortens the build and changes nothing
-# else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. Without HEADERS the targets of a folder and those
-# below it share the standard headers, which have no definitions but vip_flags': g++ refuses headers that were compiled with a
-# definition that the file lacks. vip_precompile(TARGET REUSE_FROM OTHER) takes those of a target that is compiled with the same
-# flags. Templates of such headers are instantiated in every file, whether it uses them or not: CLI11, which few files need, cost
-# each of the others 2.6 s.
+# vip_precompile(TARGET [HEADERS...]) precompiles the headers that most files of a target include. This only
+# shortens the build: each file still includes what it uses, which a build with -DVIP_PRECOMPILE=OFF verifies.
+# Without HEADERS the target uses the standard headers that vip_shared_headers() compiled. They are compiled
+# with the definitions of vip_flags alone, because g++ refuses precompiled headers with a definition that the
+# file lacks.
+# vip_precompile(TARGET REUSE_FROM OTHER) uses the precompiled headers of a target that is compiled with the
+# same flags. Add only HEADERS that most files need: g++ instantiates their templates in every file, even in
+# files that do not use them. CLI11, which few files need, cost each other file 2.6 s.
 set(vip_standard_headers <algorithm> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set> <sstream>
     <string> <vector>)
 function(vip_precompile target)
@@ -56,14 +65,16 @@ function(vip_precompile target)
     else()
       target_precompile_headers(${target} REUSE_FROM ${vip_headers})
     endif()
-    # What comes from there is no system header to g++ 12: its false alarms inside std::string show (GCC bug 105329).
+    # g++ 12 does not treat precompiled headers as system headers, so that its false alarms inside std::string
+    # would be shown (GCC bug 105329).
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
       target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
     endif()
   endif()
 endfunction()
 
-# vip_shared_headers(NAME) compiles the standard headers with the flags that are in force, for vip_precompile after it.
+# vip_shared_headers(NAME) precompiles the standard headers with the present flags. Later calls of
+# vip_precompile() in this folder and the folders below use them.
 function(vip_shared_headers name)
   if(VIP_PRECOMPILE)
     file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers.cpp CONTENT "")
@@ -74,10 +85,12 @@ function(vip_shared_headers name)
   endif()
 endfunction()
 
-# vip_unity(TARGET [FIRST regex] [APART sources...]) compiles the sources of a target in units of up to 150 kB, so that what they
-# include is read, and its templates are instantiated, once in a unit. A name in an anonymous namespace therefore occurs once in a
-# target, apart from the sources listed after APART. Sources are taken by path; those that match FIRST come first and so share
-# their units. Each file still includes what it uses, which -DVIP_UNITY=OFF shows.
+# vip_unity(TARGET [FIRST regex] [APART sources...]) compiles the sources of a target in units of up to 150
+# kB. Headers are then read, and templates instantiated, once for each unit. Therefore a name in an anonymous
+# namespace may occur only once in a target; this does not apply to the sources after APART, which are
+# compiled separately. Sources are added to the units in the order of their paths, but sources that match
+# FIRST before all others, so that they share units. Each file still includes what it uses, which a build with
+# -DVIP_UNITY=OFF verifies.
 function(vip_unity target)
   if(NOT VIP_UNITY)
     return()
@@ -114,9 +127,11 @@ function(vip_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# vip_test_units(TARGET [EACH n] [APART sources...]) compiles the *_test.cpp of each folder n at a time (default: 8) as one, which
-# unit.cmake writes. Unlike those of vip_unity they may hold equal names. A source with options of its own stays apart, as must one
-# that defines what a header declares (a printer of GoogleTest's too). Call it when the properties of the sources are set.
+# vip_test_units(TARGET [EACH n] [APART sources...]) compiles the *_test.cpp files of each folder in units of
+# up to n files (default: 8), which unit.cmake writes. Unlike the sources of vip_unity(), these files may
+# define equal names. A source with compile options of its own is compiled separately. List after APART each
+# source that defines something that a header declares, such as a printer for GoogleTest. Call
+# vip_test_units() after the properties of the sources are set.
 function(vip_test_units target)
   if(NOT VIP_UNITY OR NOT TARGET ${target})
     return()
@@ -146,7 +161,7 @@ function(vip_test_units target)
   endforeach()
   list(REMOVE_DUPLICATES groups)
   foreach(group IN LISTS groups)
-    # Units of equal size: nine sources are five and four.
+    # Divides the sources evenly: nine sources become units of four and five sources.
     list(LENGTH sources_${group} count)
     math(EXPR units "(${count} + ${arg_EACH} - 1) / ${arg_EACH}")
     if(count EQUAL 1)
@@ -169,11 +184,11 @@ function(vip_test_units target)
       target_sources(${target} PRIVATE ${unit})
     endforeach()
   endforeach()
-  # For the warnings of units; none of CMake's own is made.
+  # This property selects the warning options for units (vip_flags). CMake adds no units of its own.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# vip_library(NAME SOURCES... ) a static library; vip_program(NAME ...) an installed program.
+# vip_library(NAME SOURCES...) adds a static library, vip_program(NAME SOURCES...) an installed program.
 function(vip_library name)
   add_library(${name} STATIC ${ARGN})
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)

@@ -1,8 +1,10 @@
-# Writes a unit: a source that compiles SOURCES as one, although their anonymous namespaces hold equal names.
+# Writes a unit: a source file that includes SOURCES, so that they are compiled together even if their
+# anonymous namespaces define equal names.
 #   cmake -DUNIT=unit.cpp -DROOT=folder "-DSOURCES=a_test.cpp;b_test.cpp" -P unit.cmake
-# First comes what any of them includes. Each source then stands in a namespace of its own, where its #include lines, of headers
-# read once, do nothing. A source that reopens `study` gets a `study` inside its namespace, in which the names of ::study are seen,
-# and a `study::test`, in which those of ::study::test and of ::test are seen.
+# The unit first includes all headers that any of SOURCES includes. It then includes each source inside a
+# namespace of its own. The source's #include lines have no effect there, because each header is read only
+# once. If a source reopens the namespace `study`, its own namespace gets a `study` in which the names of
+# ::study are visible, and a `study::test` in which those of ::study::test and ::test are visible.
 set(includes)
 set(namespaces test)
 set(body)
@@ -35,5 +37,5 @@ list(JOIN includes "\n" includes)
 list(REMOVE_DUPLICATES namespaces)
 list(TRANSFORM namespaces REPLACE "(.+)" "namespace \\1 {}\n")
 list(JOIN namespaces "" namespaces)
-# Left alone when nothing changed, so that nothing is compiled again.
+# file(CONFIGURE) does not touch a unit that is unchanged, so that it is not compiled again.
 file(CONFIGURE OUTPUT ${UNIT} CONTENT "// Written by cmake/unit.cmake.\n${includes}\n\n${namespaces}${body}" @ONLY)

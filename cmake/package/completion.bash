@@ -1,4 +1,5 @@
-# Completion of vip-study, vip-stats, vip-bench and vip-view in bash: what their --help lists.
+# Completion in bash for vip-study, vip-stats, vip-bench and vip-view: the commands, options and values that
+# their --help lists, and the names of installed protocols.
 _vip_lab() {
   local program=$1 word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command='' help words='' share
   COMPREPLY=()
@@ -6,7 +7,7 @@ _vip_lab() {
   help=$("$program" ${command:+"$command"} --help 2>/dev/null) || return 0
   if [[ $word == -* ]]; then
     words=$(sed -nE 's/^ {2,4}(-[a-z],)?(--[a-z0-9-]+).*/\2/p' <<<"$help")
-  elif [[ $before == --* ]]; then  # --clock TEXT:{real,virtual}
+  elif [[ $before == --* ]]; then  # the values of an option: --help lists "--clock TEXT:{real,virtual}"
     words=$(sed -nE "s/^ {2,4}$before [^ ]*\{([^}]*)\}.*/\1/p" <<<"$help" | tr , ' ')
   elif [ -z "$command" ] && grep -q '^Subcommands:' <<<"$help"; then
     words=$(sed -nE '/^Subcommands:/,$ s/^  ([a-z][a-z0-9-]*) .*/\1/p' <<<"$help")

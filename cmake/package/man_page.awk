@@ -1,4 +1,4 @@
-# A manual page from the --help of a program or of one of its commands.
+# Makes a manual page from the --help of a program or of one of its commands.
 # usage: COMMAND --help | awk -v name="vip-study run" -v version=0.1.0 -v date=2026-01-31 -v see="vip-study" -f man_page.awk
 function escaped(text) {
   gsub(/\\/, "\\e", text)
@@ -21,20 +21,20 @@ NR == 1 {
   print escaped(substr($0, 8))
   next
 }
-/^ *\[/ {  # a group whose options depend on each other
+/^ *\[/ {  # the heading of a group of options that depend on each other
   gsub(/^ *\[(Option Group: )?|\]$/, "")
   if (/^formats|^[a-z ]+$/) section($0)
   else print ".PP\n" escaped($0)
   ended = 0
   next
 }
-/^ *Options:$/ && grouped++ && /^ / { next }  # those of that group
-/^[A-Z].*:$/ && length($0) < 40 {  # "Options:", or a group by its name
+/^ *Options:$/ && grouped++ && /^ / { next }  # the heading "Options:" within such a group
+/^[A-Z].*:$/ && length($0) < 40 {  # a heading: "Options:" or the name of a group
   section(substr($0, 1, length($0) - 1))
   ended = 0
   next
 }
-/^  +[^ ]/ && match($0, /^ +/) && RLENGTH < 6 {  # an option, and often what it does behind it
+/^  +[^ ]/ && match($0, /^ +/) && RLENGTH < 6 {  # an option, usually followed by its meaning
   sub(/^ +/, "")
   what = ""
   if (match($0, /   *[^ ]/)) {
@@ -51,7 +51,7 @@ NR == 1 {
   next
 }
 /^ *$/ { next }
-{  # text behind the options
+{  # text after the options
   if (!ended++) section("Notes")
   print escaped($0)
 }

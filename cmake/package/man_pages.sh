@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# A manual page for each program and each of its commands, from their --help.
+# Makes a manual page for each program and each of its commands, from their --help.
 # usage: man_pages.sh PROGRAMS_FOLDER MAN_FOLDER
 set -euo pipefail
 programs=$1 out=$2
 here=$(dirname "$0")
 mkdir -p "$out"
 
-page() {  # page SEE PROGRAM [COMMAND ...]
+page() {  # page SEE PROGRAM [COMMAND]: writes the page, which refers to the page SEE
   local see=$1 program=$2 name text
   shift
   name=$(IFS=-; echo "$*")
