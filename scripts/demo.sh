@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# The main job on this machine: sets up, builds, and goes once round the loop from a scene to the solver's file.
-# usage: scripts/demo.sh        everything goes to out/demo/; run it again to replace that
+# Demonstrates the main workflow on this machine: installs packages, builds, and runs every step from a scene
+# to the solver's file.
+# usage: scripts/demo.sh        results go to out/demo/; a further run replaces them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=out/demo
 bin=build/release/bin
 observer=ptpe:a=24,b=0.02
-# The programs see to this by themselves; here it also holds for the software OpenGL's neighbours.
+# Makes waiting OpenMP threads sleep instead of spin. The programs would set this themselves and restart.
 export OMP_WAIT_POLICY=passive
 
 phases=()
@@ -44,7 +45,8 @@ run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k -
   --pictures 640x360 --out $out/dam.bake
 
 phase "Play the 21 settings in real time, 1.2 s each, every frame rendered"
-# A protocol is a file. This copy asks for a black of 0.25 s before each trial: a simulated observer needs no rest.
+# This copy of the protocol shows black for 0.25 s before each trial, not 3 s, since a simulated observer
+# needs no rest.
 run sed -n 's/"black 3"\(.*]\).*/"black 0.25"\1/; w '$out/short_pauses.toml protocols/ptpe_pilot.toml
 run $bin/vip-study run $out/short_pauses.toml --db $out/pacing.db --participants 1 --observer $observer \
   --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1.2

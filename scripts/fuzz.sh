@@ -1,8 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes every file format (tests/fuzz) with clang's libFuzzer under the address and undefined-behaviour sanitizers, and
-# prints a table. What it finds lies in build/fuzz/findings/<format>/; then the exit status is 1. 77: there is no clang.
-# Usage: scripts/fuzz.sh [--binaries DIR] [SECONDS [JOBS [FORMAT ...]]]   default 60 s for each, one job for each processor;
-# where there are more jobs than formats, as many jobs for each format as fit share what they find
+# Fuzzes the reader of every file format (tests/fuzz) with clang's libFuzzer under the address and
+# undefined-behaviour sanitizers, and prints a table. Inputs that fail are kept in
+# build/fuzz/findings/<format>/found.
+# Exit status: 0 no finding, 1 findings, 77 clang is missing.
+# Usage: scripts/fuzz.sh [--binaries DIR] [SECONDS [JOBS [FORMAT ...]]]
+#   SECONDS          duration for each format (default: 60)
+#   JOBS             parallel jobs (default: one for each processor); if there are at least two jobs for each
+#                    format, the jobs of a format share their inputs
+#   FORMAT           formats to fuzz (default: all)
 #   --binaries DIR   runs the programs in DIR, built elsewhere (build/fuzz/tests/fuzz), instead of building them
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,7 +28,7 @@ formats=("$@")
   [ -f "$program" ] && [ -x "$program" ] && formats+=("${program##*/fuzz_}")
 done
 
-fuzz() {  # fuzz FORMAT/JOB: new inputs are kept from one run to the next, what fails apart from them
+fuzz() {  # fuzz FORMAT/JOB: keeps new inputs in corpus/ for the next run, and inputs that fail in found/
   local format=${1%/*} here=$out/${1%/*}
   mkdir -p "$here/corpus" "$here/found"
   "$binaries/fuzz_$format" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 \
@@ -31,7 +36,7 @@ fuzz() {  # fuzz FORMAT/JOB: new inputs are kept from one run to the next, what 
 }
 export -f fuzz
 export out binaries seconds UBSAN_OPTIONS=print_stacktrace=1 OMP_NUM_THREADS=1
-# What the tests read of the project is found without the folder they were built in.
+# The programs read the project's files from here, even if they were built in another folder.
 export VIP_SHARE_DIR=$PWD
 each=$((jobs > ${#formats[@]} ? jobs / ${#formats[@]} : 1))
 for format in "${formats[@]}"; do

@@ -23,7 +23,7 @@ step() {  # step NAME COMMAND...: runs it, keeps its log, notes pass or fail
   fi
 }
 
-figure() {  # figure NAME JSON-FILE: the line of one bench
+figure() {  # figure NAME JSON-FILE: prints the table's line of one bench
   [ -f "$2" ] || return 0
   python3 - "$1" "$2" <<'PY' | tee -a "$table"
 import json, sys

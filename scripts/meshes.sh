@@ -1,17 +1,18 @@
 #!/bin/sh
-# Writes the meshes of data/scenes/boat.toml, which are formulas: data/meshes/hull.obj and ring.obj.
+# Computes the meshes of data/scenes/boat.toml from formulas and writes data/meshes/hull.obj and ring.obj.
 set -eu
 out=${1:-$(dirname "$0")/../data/meshes}
 mkdir -p "$out"
 
-# A grid of `rings` rings of `points` places each becomes triangles; rings are closed.
+# awk functions that write triangles: quad() writes two for a quadrilateral, and band() writes those between
+# two closed rings of `points` vertices, whose first vertices are `from` and `to`.
 triangles='
   function quad(a, b, c, d) { printf "f %d %d %d\nf %d %d %d\n", a, b, c, a, c, d }
   function band(from, to, points,   k, next_k) {
     for (k = 0; k < points; ++k) { next_k = (k + 1) % points; quad(from + k, from + next_k, to + next_k, to + k) }
   }'
 
-# A solid hull of 1.2 m: 0.44 m wide, 0.3 m deep, pointed at both ends, with a deck that rises towards them.
+# A solid hull: 1.2 m long, 0.44 m wide, 0.3 m deep, pointed at both ends, with a deck that rises to both ends.
 awk "$triangles"'
   BEGIN {
     pi = atan2(0, -1); stations = 24; points = 18; keel = 12
@@ -33,7 +34,7 @@ awk "$triangles"'
     for (k = 0; k < points; ++k) printf "f %d %d %d\n", last, last - points + k, last - points + (k + 1) % points
   }' >"$out/hull.obj"
 
-# A ring: a torus of 0.28 and 0.1 m round y.
+# A ring: a torus about the y axis, with radii of 0.28 m (to the centre of the tube) and 0.1 m (the tube).
 awk "$triangles"'
   BEGIN {
     pi = atan2(0, -1); rings = 40; points = 16

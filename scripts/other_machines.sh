@@ -22,19 +22,19 @@ table=$out/table.txt
 printf '%-14s %8s %8s %8s\n' variant tests failed seconds >"$table"
 failed=0
 
-build() {  # build FOLDER FLAGS: the dev preset with these flags in place of its -O2
+build() {  # build FOLDER FLAGS: builds the dev preset with these flags in place of its -O2
   cmake --preset dev -B "build/$1" -DVIP_CUDA=OFF -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="$2 -DNDEBUG" >"$out/$1.build.log" 2>&1 &&
     cmake --build "build/$1" --target "$target" >>"$out/$1.build.log" 2>&1 && return
   tail -n 15 "$out/$1.build.log" >&2
   return 1
 }
 
-select_tests() {  # select_tests PROGRAM: the names that the filter lets through, as GoogleTest takes them
+select_tests() {  # select_tests PROGRAM: prints a --gtest_filter for the tests whose names match the filter
   "$1" --gtest_list_tests | awk '/^[^ ]/ { suite = $1; next } { print suite $1 }' | grep -E -- "$filter" |
     grep -vE '^[^.]*(Gpu|Slow)\.' | paste -sd:
 }
 
-try() {  # try VARIANT FOLDER THREADS (empty: as many as there are cores)
+try() {  # try VARIANT FOLDER THREADS: runs the tests; THREADS empty: one thread for each core
   local log=$out/$1.log start=$SECONDS tests bad
   (
     [ -z "$3" ] || export OMP_NUM_THREADS=$3

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Packs a build and tries the package in a clean Debian: installs it, goes once round the loop without a compiler, removes it.
+# Packs a build and tries the package in a clean Debian: installs it, runs the whole workflow without a
+# compiler, and removes it.
 # usage: scripts/package.sh [BUILD]     default: build/package, which `cmake --workflow --preset package` makes
-# Exit status 77: not tried, for the reason that is printed.
+# Exit status 77: the package was not tried; the reason is printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(realpath "${1:-build/package}")
@@ -12,7 +13,7 @@ command -v dpkg-shlibdeps >/dev/null || skip "dpkg-shlibdeps is missing (apt-get
 command -v file >/dev/null || skip "file is missing (apt-get install file)"
 grep -q '^VIP_NATIVE:BOOL=OFF' "$build/CMakeCache.txt" || skip "$build is for this processor alone (VIP_NATIVE)"
 
-# Mounts of its own, which end with it.
+# Starts itself again in a mount namespace of its own, so that its mounts end with it.
 [ -n "${VIP_OWN_MOUNTS:-}" ] || exec env VIP_OWN_MOUNTS=1 unshare --mount "$0" "$build"
 work=$(mktemp -d)
 root=$work/root
@@ -38,7 +39,8 @@ study=/home/study
 mkdir -p "$root$study"
 inside() { chroot "$root" env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME="$study" DEBIAN_FRONTEND=noninteractive "$@"; }
 
-# What the package needs, then a look at the files, then the package alone.
+# Installs the package with its dependencies and removes the package alone. Then lists all files, which must
+# be the same after the package was installed again and removed.
 cp "$package" "$root/tmp/vip-lab.deb"
 cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
 inside apt-get update -qq
@@ -50,7 +52,7 @@ files >"$work/before"
 inside dpkg --install /tmp/vip-lab.deb
 ! inside sh -c 'command -v cc || command -v c++ || command -v cmake' || { echo "package: the root has a compiler" >&2; exit 1; }
 
-# Once round the loop, from a user's home.
+# Runs the whole workflow in a user's home, from a protocol to the solver's file, a report and pictures.
 run() { printf '\n$ %s\n' "$*"; inside sh -c "cd $study && exec \"\$@\"" sh "$@"; }
 run vip-study --version
 run vip-study check ptpe_pilot --refresh 90
@@ -67,7 +69,8 @@ for page in vip-study vip-study-run vip-stats-fit-ptpe vip-bench-frame vip-view;
 done
 
 inside dpkg --remove vip-lab
-# The OpenGL driver keeps its shaders in the home of the password file.
+# The OpenGL driver caches shaders in root's home (from the password file), so that hidden files there are
+# allowed.
 files | grep -v -e "^$study" -e '^/root/\.' >"$work/after" || true
 left=$(comm -13 "$work/before" "$work/after")
 [ -z "$left" ] || { printf 'package: dpkg --remove left:\n%s\n' "$left" >&2; exit 1; }

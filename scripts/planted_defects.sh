@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
-# Plants known defects in a copy of the solver, one at a time, and expects tests to go red. Prints a table; fails where one survives.
+# Plants known defects in a copy of the solver, one at a time, and runs the tests that must then fail. Prints
+# a table; fails if a defect is detected by no test.
 # usage: scripts/planted_defects.sh [NAME ...]   default: all
-#        scripts/planted_defects.sh --list       their names
-#        scripts/planted_defects.sh --check      that each is still where it can be planted, and in docs/results.md; builds nothing
-# The copy and its build lie in build/planted and are used again. Logs go to out/planted_defects.
+#        scripts/planted_defects.sh --list       lists the defects
+#        scripts/planted_defects.sh --check      checks, without building, that each defect can still be planted
+#                                                and that docs/results.md lists it
+# The copy and its build are in build/planted and are reused. Logs go to out/planted_defects.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 copy=build/planted out=out/planted_defects
 names=() words=() files=() olds=() news=() programs=() filters=()
 
-# defect NAME WORDS FILE PROGRAM FILTER OLD NEW [OLD NEW ...]: OLD stands once in FILE and becomes NEW; tests of PROGRAM go red.
+# defect NAME WORDS FILE PROGRAM FILTER OLD NEW [OLD NEW ...] declares a defect: OLD, which occurs exactly
+# once in FILE, is replaced by NEW. Tests of PROGRAM that match FILTER must then fail.
 defect() {
   local name=$1 old='' new=''
   names+=("$name") words+=("$2") files+=("$3") programs+=("$4") filters+=("$5")
@@ -62,7 +65,7 @@ index_of() {  # index_of NAME
   return 1
 }
 
-planted() {  # planted I: the file's text with the defect in it
+planted() {  # planted I: prints the text of the file with defect I
   local text old new rest_old=${olds[$1]} rest_new=${news[$1]}
   text=$(<"${files[$1]}")
   while [ -n "$rest_old" ]; do
@@ -86,12 +89,12 @@ check() {
   return $bad
 }
 
-copy_sources() {  # as they lie here, committed or not
+copy_sources() {  # copies the sources of the working tree, committed or not
   mkdir -p "$copy"
   find "$copy" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
   git ls-files -zco --exclude-standard | while IFS= read -r -d '' file; do [ ! -e "$file" ] || printf '%s\0' "$file"; done |
     tar --null -T - -cf - | tar -xf - -C "$copy"
-  touch "${files[@]/#/$copy/}"  # what an interrupted run has compiled of them is no more
+  touch "${files[@]/#/$copy/}"  # forces a new compilation: an interrupted run may have compiled a defect
 }
 build() { cmake --build "$copy/build/dev" --target "$@" >"$log" 2>&1; }
 run() {  # run PROGRAM FILTER
@@ -115,7 +118,7 @@ copy_sources
 mapfile -t all < <(for i in "${chosen[@]}"; do echo "${programs[$i]}"; done | sort -u)
 build "${all[@]}" || { tail -n 15 "$log" >&2; exit 2; }
 failed=0
-for program in "${all[@]}"; do  # without a defect they are green
+for program in "${all[@]}"; do  # without a defect all tests must pass
   filter=
   for i in "${chosen[@]}"; do [ "${programs[$i]}" != "$program" ] || filter+="${filters[$i]}:"; done
   run "$program" "$filter-*Gpu.*:*Slow.*" || { echo "planted_defects: red without a defect: see $log" >&2; exit 2; }

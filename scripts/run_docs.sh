@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
-# Runs every command line that a page quotes in its "sh" blocks, as it stands, in a fresh copy of the project. A command that ends
-# with an error, or an output file that it names and does not write, fails the page. What cannot run as it stands is in the table
-# below with the reason; what is skipped names the test that runs it instead, which must exist.
+# Runs every command line that a page quotes in its "sh" blocks, unchanged, in a fresh copy of the project. A
+# page fails if a command ends with an error or does not write an output file that it names. The table below
+# lists the commands that cannot run unchanged, and why. The row of a skipped command names the test that runs
+# the command instead; that test must exist.
 # usage: scripts/run_docs.sh [PAGE ...]      default: every page; copies, logs and durations go to out/docs
-# Takes the programs from $VIP_BUILD (default: build/dev). README.md alone starts from nothing: it builds its own.
-# VIP_DOCS_QUICK=1 leaves out what the table calls slow.
+# Takes the programs from $VIP_BUILD (default: build/dev). Only README.md builds its own programs.
+# VIP_DOCS_QUICK=1 skips the commands that the table calls slow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD
 build=$(realpath "${VIP_BUILD:-build/dev}")
 out=$(realpath -m "${VIP_DOCS_OUT:-out/docs}")
-export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoever runs this
+export VIP_STATE_DIR=$out/state  # keeps the pages' exports out of the user's own register of exports
 [ $# -gt 0 ] || set -- README.md docs/*.md
 
-# PAGE | HOW A COMMAND BEGINS | WHAT RUNS INSTEAD | WHY | TEST
-# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", or "slow"
-# (the command, but not in a quick run).
+# Columns: PAGE | BEGINNING OF THE COMMAND | HOW IT RUNS | WHY | TEST
+# HOW IT RUNS is one of: "person" (keys on a virtual screen answer the pages of the command), a sed script that
+# changes the command, "skip", or "slow" (the command is skipped only in a quick run).
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run protocols/ptpe_pilot.toml|person||
@@ -44,7 +45,7 @@ docs/session.md|vip-study bake --protocol|skip|hours on two cores|BakeProtocolE2
 "
 outputs='--(out|into|db|html|json|svg|csv|png|bids|psych-ds|preview|cells|checkpoints-to)'
 
-# The command lines of a page's sh blocks, each with its continuations on one line and without its comment.
+# Prints the command lines of a page's sh blocks, with continuation lines joined and comments removed.
 commands_of() {
   awk '/^```/ { shell = !inside && $0 == "```sh"; inside = !inside; next }
        shell { line = line $0; if (sub(/\\$/, "", line)) next; print line; line = "" }' "$1" |
@@ -54,14 +55,16 @@ commands_of() {
 failed=0
 fail() { printf 'FAILED  %s: %s\n' "$page" "$1" >&2; failed=1; }
 
-# A block that names no language would not be run, whatever it holds; so would one that is indented.
+# Prints an error for each block that names no known language and for each indented command: neither would be
+# run.
 check_blocks() {
   awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|cpp|json|toml|mermaid)$/) print NR; inside = !inside; next }
        !inside && /^    (\.\/)?(vip-|scripts|ctest|cmake|build)/ { print NR }' "$1" |
     while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, cpp, json, toml or mermaid"; done
 }
 
-# Tests and scripts that the page names in its text. Where not all test programs are built, not every test is known.
+# Checks that the tests and scripts that the page names in its text exist. If some test programs are not
+# built, a test that is not found is no error.
 check_names() {
   local spans name
   spans=$(sed '/^```/,/^```/d' "$1" | tr '\n' ' ' | grep -oE '`[^`]+`' || true)
@@ -74,19 +77,20 @@ check_names() {
 }
 count_tests() { ctest --test-dir "$build" -N -R "$1" | sed -n 's/^Total Tests: //p'; }
 
-check_test() {  # check_test NAME: a file of the project or a test of the build
+check_test() {  # check_test NAME: NAME must be a file of the project or a test of the build
   [ -e "$root/$1" ] || [ "$(count_tests "^${1//./\\.}\$")" = 1 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] ||
     fail "the table names a test that does not exist: $1"
 }
 
-row_for() {  # row_for COMMAND: the row of the table that is about it
+row_for() {  # row_for COMMAND: prints the row of the table that applies to the command
   local of begins how why test
   while IFS='|' read -r of begins how why test; do
     if [ "$of" = "$page" ] && [[ $1 == "$begins"* ]]; then printf '%s|%s|%s|%s\n' "$begins" "$how" "$why" "$test"; fi
   done <<<"$table"
 }
 
-# Whatever page is on, keys come about once a second; 1 says yes to a consent, each digit is a rating.
+# Presses a digit and Return about once a second, whatever page is shown. On a consent page 1 means yes; on
+# other pages each digit is a rating.
 press_keys() {
   local n=0
   while true; do
@@ -96,7 +100,7 @@ press_keys() {
     sleep 0.5
   done
 }
-answer_by_keys() {  # answer_by_keys COMMAND
+answer_by_keys() {  # answer_by_keys COMMAND: runs it on a virtual screen, with press_keys()
   size=1280x720
   (
     out=$folder/screen
@@ -110,7 +114,7 @@ answer_by_keys() {  # answer_by_keys COMMAND
   )
 }
 
-run_command() {  # run_command COMMAND: in the page's folder
+run_command() {  # run_command COMMAND: runs it in the page's folder, as the table says
   local command=$1 row begins how='' why='' test='' status=0 start=$SECONDS
   row=$(row_for "$command")
   if [ -n "$row" ]; then
@@ -135,7 +139,7 @@ run_command() {  # run_command COMMAND: in the page's folder
   done
 }
 
-run_page() {  # in a subshell: the page's exports are its own
+run_page() {  # run_page PAGE: call it in a subshell, so that the page's exports do not reach other pages
   page=$1 folder=$out/${1//\//_} used=''
   log=$folder.log
   rm -rf "$folder"

@@ -18,14 +18,14 @@ build=(
   libfmt-dev libtomlplusplus-dev nlohmann-json3-dev libpng-dev libzstd-dev zlib1g-dev libxxhash-dev libsodium-dev
   # software OpenGL for machines without a GPU
   libegl1 libgl1 libgl1-mesa-dri
-  # type of the participant's window; other fonts of the system are found by fontconfig
+  # font of the participant's window; fontconfig finds other fonts of the system
   fonts-dejavu-core libfontconfig-dev
 )
 tests=(libgtest-dev libgmock-dev)
 tools=(sqlite3 locales openxr-layer-corevalidation util-linux xvfb xauth)
 slow=(xdotool imagemagick)            # for scripts/window_*.sh
 slow+=(debootstrap dpkg-dev file)     # for scripts/package.sh
-# For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.
+# npm installs the BIDS validator (scripts/validate_bids.sh). An npm that is already installed is used.
 command -v npm >/dev/null || slow+=(nodejs npm)
 sweeps=(snakemake)
 lint=(clang-tidy)

@@ -3,17 +3,17 @@
     snakemake -s scripts/sweep.smk --cores 2 --config accuracy="--quick" out=sweep
     snakemake -s scripts/sweep.smk --cores 2 --config power="protocols/task2.toml --effect 0.7" out=sweep
 
-docs/results.md and docs/statistics.md show both whole. --config takes:
+docs/results.md and docs/statistics.md show complete runs. Keys of --config (with defaults):
 
-accuracy  options of vip-bench accuracy; without the key none of its cells run
-power     protocol and options of vip-stats power; the same
+accuracy  options of vip-bench accuracy; without this key no cell of it runs
+power     protocol and options of vip-stats power; without this key no cell of it runs
 out       folder of shards and results (sweep)
-bin       folder of the programs; without: as the shell finds them
-batch     cells a job (1)
-retries   of a job that failed or was killed (2)
-minutes   a cluster gives a job (8)
-threads   of a timed cell (--cores); a cluster needs it
-slurm     more options of sbatch for timed cells (--exclusive)
+bin       folder of the programs (the folders of PATH)
+batch     number of cells for each job (1)
+retries   how often a job that failed or was killed is repeated (2)
+minutes   time limit of a job on a cluster, minutes (8)
+threads   number of threads of a timed cell (--cores); required on a cluster
+slurm     further options of sbatch for timed cells (--exclusive)
 """
 
 import os
@@ -31,7 +31,7 @@ def program(name):
 
 
 def batches_of(command):
-    """The keys that the command lists, BATCH a job; a job is known by its first key and their number."""
+    """The keys that the command lists, BATCH for each job. A job is named by its first key and its number of keys."""
     listed = subprocess.run(f"{command} --list", shell=True, text=True, stdout=subprocess.PIPE)
     if listed.returncode != 0:
         raise WorkflowError(f"{command} --list: exit status {listed.returncode}")
@@ -48,8 +48,8 @@ def shards_of(kind, batches, ending):
     return [f"{OUT}/{kind}/shards/{key}.{ending}" for batch in batches.values() for key in batch]
 
 
-# Snakemake deletes what a job that fails has put out. So a shard is no output: finished cells stay, and the
-# programs pass over a cell that its shard holds.
+# Snakemake deletes the outputs of a job that fails. A shard is therefore not declared as an output: finished
+# cells remain, and the programs skip a cell whose shard already holds it.
 EACH = (
     "for key in {params.cells}; do "
     "{params.command} --cell $key --out {params.shards}/$key.{params.ending}; done"
@@ -61,8 +61,8 @@ if "accuracy" in config:
     accuracy = f"{program('vip-bench')} accuracy {config['accuracy'] or ''}"
     accuracy_batches = batches_of(accuracy)
     results += [f"{OUT}/accuracy/{name}" for name in ("accuracy.html", "sweep.db", "settings.csv")]
-    # Alone on its machine: all cores here, a whole node there. The threads are part of what a time was
-    # measured on, so that the table is made with as many.
+    # A timed job runs alone on its machine: it gets all cores of this machine, or a whole node of a cluster.
+    # The number of threads is stored with each time, so that the table is made with the same number.
     timed_threads = int(config["threads"] if "threads" in config else workflow.cores)
     exclusive = str(config.get("slurm", "--exclusive"))
 
@@ -74,7 +74,7 @@ if "accuracy" in config:
             command=accuracy,
             shards=f"{OUT}/accuracy/shards",
             ending="db",
-            machine=timed_threads,  # cells of other numbers of threads are others
+            machine=timed_threads,  # with another number of threads the cells run again
         threads: timed_threads
         resources:
             runtime=int(config.get("minutes", 8)),

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Sets up, builds with warnings as errors, looks at what changed with clang-tidy, and runs every test
-# that needs no GPU and is not labelled slow.
+# Installs packages, builds with warnings as errors, checks the changed sources with clang-tidy, and runs
+# every test that needs no GPU and is not labelled slow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./scripts/setup.sh build tests
-# Install the programs that tests run during the build. Where sudo asks for a password, install them before it.
+# Installs the programs that the tests start: in parallel with the build, or before it if sudo asks for a
+# password.
 mkdir -p build
 if [ "$(id -u)" -eq 0 ] || sudo -n true 2>/dev/null; then
   ./scripts/setup.sh tools >build/setup.log 2>&1 &

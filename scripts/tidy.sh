@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
-# clang-tidy with the checks of .clang-tidy on the C++ that changed since BASE, committed or not; what it finds is an error.
-# usage: scripts/tidy.sh [BASE]           default: $VIP_TIDY_BASE, or where this branch left origin/main
+# Runs clang-tidy with the checks of .clang-tidy on the C++ sources that changed since BASE, committed or not.
+# Every finding is an error.
+# usage: scripts/tidy.sh [BASE]           default: $VIP_TIDY_BASE, else the merge base with origin/main
 #        scripts/tidy.sh --files FILE...  these sources
-# A header is looked at through a source that includes it. Without --files no more than $VIP_TIDY_MOST sources (default: 16) are
-# looked at, which takes up to two minutes on two cores; the rest is named.
+# A header is checked through a source that includes it. Without --files at most $VIP_TIDY_MOST sources
+# (default: 16) are checked, which takes up to two minutes on two cores; the names of the other sources are
+# printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-changed() {  # changed [BASE]: C++ files that differ from there
+changed() {  # changed [BASE]: prints the C++ files that differ from BASE
   local base=${1:-${VIP_TIDY_BASE:-}}
   [ -n "$base" ] || base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null || true)
   git rev-parse --verify -q "$base^{commit}" >/dev/null || { echo "tidy: no earlier commit is known here" >&2; return; }
   { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '\.[ch]pp$' | sort -u || true
 }
-source_of() {  # source_of FILE: itself, or for a header a source that reads it
+source_of() {  # source_of FILE: prints FILE, or for a header a source that includes it
   case $1 in
     *.cpp) echo "$1" ;;
     *) if [ -f "${1%.hpp}.cpp" ]; then echo "${1%.hpp}.cpp"; else git grep -lF "\"$1\"" -- '*.cpp' | sed -n 1p || true; fi ;;
@@ -33,9 +35,10 @@ fi
 [ ${#sources[@]} -gt 0 ] || { echo "tidy: nothing changed"; exit 0; }
 
 ./scripts/setup.sh lint
-# Without precompiled headers, which clang cannot read from g++, and each source by itself.
+# Configures without precompiled headers, because clang cannot read those of g++, and without units of several
+# sources.
 cmake --preset dev -B build/tidy -DVIP_PRECOMPILE=OFF -DVIP_UNITY=OFF -DVIP_CUDA=OFF >/dev/null
-# A build makes this file from the sources of the solver; here any text will do.
+# The build generates this file from the solver's libraries. For clang-tidy any string literal will do.
 [ -f build/tidy/libsim/solver_digest.inc ] || echo '""' >build/tidy/libsim/solver_digest.inc
 known=()
 for source in "${sources[@]}"; do

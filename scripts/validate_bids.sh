@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Checks BIDS exports with the standard's validator, which npm installs once into build/tools.
 # usage: scripts/validate_bids.sh [FOLDER...]   without a folder it only installs
-# status: 0 no folder has an error, 1 one has (told on stdout), 77 there is no validator (no npm, or no registry of packages)
+# Exit status: 0 no folder has an error, 1 a folder has an error (printed on stdout), 77 the validator cannot
+# be installed (no npm, or no package registry).
 set -euo pipefail
 version=1.15.0
 tools=$(cd "$(dirname "$0")/.." && pwd)/build/tools

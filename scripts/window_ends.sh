@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The ways in which a session ends before its last page, at the participant's window, by real keys and the real mouse on a virtual
-# screen: consent taken back and refused, ruled out by screening, stopped in a stimulus with all deleted, stopped in a rest with
-# all kept; and the experimenter's pause. Fails when a page, an exit status or the database is not as it should be.
+# Tests how a session ends before its last page, with real key and mouse events at the participant's window on
+# a virtual screen. P01 refuses consent, P02 is excluded by screening, P03 stops during a stimulus and has all
+# data deleted, and P04 stops during a rest and keeps the data. Also tests the experimenter's pause. Fails if
+# a page, an exit status or the database is not as expected, or if a session gets stuck.
 # usage: scripts/window_ends.sh [FOLDER]    default: out/window_ends. Takes three minutes: a rest after a stop is 60 s.
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
 set -euo pipefail
@@ -17,20 +18,20 @@ bake_dam "$out/dam.bake"
 screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
-# The demonstration with one method, which a bake can show.
+# The demonstration protocol with one method, so that one bake holds all stimuli.
 sed -e 's/^method = .*/method = ["HiRes"]/' -e 's/^order = "constrained".*/order = "shuffle"/' -e '/^never_adjacent/d' \
   protocols/demo.toml >"$out/protocol.toml"
 mkfifo "$out/keys"
 exec 3<>"$out/keys"  # the experimenter's keyboard
 
-begin() {  # begin CODE: a person's session
+begin() {  # begin CODE: starts a person's session
   code=$1 events=$out/$1.events
   : >"$events"
   "$study" run "$out/protocol.toml" --db "$db" --participant "$code" --display window --station test --screen-width-mm 520 \
     --viewing-distance-mm 600 --stimulus "$out/dam.bake" --trial-seconds 2 --seed 3 --events --console <&3 >"$events" 2>"$out/$code.log" &
   session=$!
 }
-ended() {  # ended STATUS STATE: what the command and the database say
+ended() {  # ended STATUS STATE: checks the exit status of the command and the state of the session
   local status=0
   for _ in $(seq 100); do alive || break; sleep 0.1; done
   ! alive || { shoot "${code}_stuck"; echo "window_ends: $code is stuck at: $(tail -n 1 "$events")" >&2; exit 1; }
@@ -40,7 +41,7 @@ ended() {  # ended STATUS STATE: what the command and the database say
   expect "$code: state" "$2" "$(ask "select state from session where participant = '$code'")"
 }
 ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
-until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms are over
+until_begins() {  # until_begins KIND: waits until a unit of this kind is shown and takes input
   local give_up=$((SECONDS + 60))
   until tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; do
     [ $SECONDS -lt $give_up ] && alive || { shoot "${code}_stuck"; echo "window_ends: $code comes to no $1" >&2; exit 1; }
@@ -48,7 +49,7 @@ until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms a
   done
   sleep 0.6
 }
-# The next page, and a picture of it; what comes in its first 300 ms counts for nothing.
+# page NAME: waits for the next page, which ignores input in its first 300 ms, and stores a screenshot.
 page() { sleep 0.6; shoot "${code}_$1"; }
 welcome() { until_begins instructions; sleep 3; key Return; }
 agree() { until_begins consent; key 1 Return; }
@@ -59,7 +60,8 @@ to_practice() {
   until_begins fms; key Right Return Return
 }
 
-# The mouse lies where "yes" comes to stand: it is not lit. A key hit by mistake is taken back; then the refusal is meant.
+# The mouse rests where "yes" appears and must not highlight it. The first refusal is taken back as a mistake;
+# the second refusal is confirmed.
 begin P01
 until_begins instructions
 shoot P01_welcome
@@ -135,7 +137,7 @@ page stop_question
 key 2 Return
 sleep 61
 key Return
-sleep 0.6; key 2 Return  # no questionnaire
+sleep 0.6; key 2 Return  # declines the questionnaire
 page keep_or_delete
 key 1 Return
 page kept

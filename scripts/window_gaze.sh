@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The mouse as gaze at the participant's window: recorded of who said yes, nothing of who said no, on a virtual screen with
-# the real pointer. usage: scripts/window_gaze.sh [FOLDER]    default: out/window_gaze
+# Tests the mouse as the source of gaze at the participant's window, with the real pointer on a virtual
+# screen. Gaze must be recorded for a participant who allowed it, and not for one who refused.
+# usage: scripts/window_gaze.sh [FOLDER]    default: out/window_gaze
 # Takes vip-study from $VIP_STUDY, else from build/dev. Databases and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +16,7 @@ screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
 
-# The pilot at two frame rates, with one more box on its consent page that an observer ticks or not.
+# The pilot at two frame rates, with a further consent question, which an observer answers with yes or no.
 cat >"$out/box" <<'END'
 
 [[block.question]]
@@ -27,16 +28,16 @@ END
 sed -e "/^accept = /r $out/box" -e 's/^mean_fps = .*/mean_fps = [20, 50]/' -e 's/^sd_fps = .*/sd_fps = [0]/' \
   -e 's/"black 3", //' protocols/ptpe_pilot.toml >"$out/protocol.toml"
 
-# session CODE OBSERVER: played while the pointer goes to and fro on the picture
+# session_of CODE OBSERVER: plays a session while the pointer moves to and fro over the picture
 session_of() {
   xdotool mousemove $((width / 2)) $((height / 4))
   "$study" run "$out/protocol.toml" --db "$out/study.db" --participant "$1" --observer "$2" --display window --gaze mouse \
     --stimulus "$out/dam.bake" --trial-seconds 2 --events >"$out/events_$1" 2>"$out/log_$1" &
   session=$!
   while alive; do
-    for at in 25 45 75; do  # GLFW put the pointer into the very middle and takes a move to that pixel for its own
+    for at in 25 45 75; do  # not 50: GLFW placed the pointer at the centre and ignores a move to that pixel
       xdotool mousemove $((width * at / 100)) $((height / 2)) || true
-      sleep 0.12  # so long that a slow machine sees each place
+      sleep 0.12  # long enough for a slow machine to record each position
     done
   done
   wait "$session" || { cat "$out/log_$1" >&2; failed=1; }

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Kills a person's session at the window with SIGKILL at KILLS instants drawn from SEED, resumes it after each, and then
-# fills the disk in the middle of a trial of another. Answered by real keys and the real mouse on a virtual screen.
-# Fails when an answer is lost or asked for twice, when a cut trial is not marked and shown again, or when the database
-# is harmed. usage: scripts/window_kills.sh [FOLDER [KILLS [SEED]]]    default: out/window_kills 50 1
+# Kills a person's session at the window with SIGKILL at KILLS random instants (SEED is the seed) and resumes
+# it after each kill. Then lets the disk fill in the middle of a trial of another session. Real key and mouse
+# events on a virtual screen answer the pages. Fails if an answer is lost or asked for twice, if a trial that
+# was cut is not marked and shown again, or if the database is damaged.
+# usage: scripts/window_kills.sh [FOLDER [KILLS [SEED]]]    default: out/window_kills 50 1
 # Takes vip-study from $VIP_STUDY, else from build/dev. Databases, events and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,7 +24,7 @@ export DISPLAY
 failures=0
 fail() { echo "FAILED  $name, $stage: $*"; failures=$((failures + 1)); }
 
-write_protocol() {  # write_protocol FILE MEANS SECONDS: every kind of page that keeps an answer, and trials
+write_protocol() {  # write_protocol FILE MEANS SECONDS: with trials and each kind of page that stores an answer
   cat >"$1" <<END
 format = 2
 name = "$name"
@@ -125,9 +126,9 @@ text = "That was all."
 END
 }
 
-# A key that finds no window is lost, as it would be; the unit is still on and is answered again.
+# A key is lost while there is no window, as a person's key would be. The unit is then answered again.
 key() { for k in "$@"; do xdotool key "$k" || true; sleep 0.06; done; }
-# The button to go on stands 2.7 lines above the lower edge; a line is 2.96 % of the height.
+# Clicks the button to go on (window_lib.sh).
 click_on() {
   xdotool mousemove $((width / 2)) "$button_y" || true
   sleep 0.06
@@ -135,7 +136,7 @@ click_on() {
   sleep 0.08
 }
 
-answer() {  # answer KIND: what a person does while such a unit is on, again and again until it is over
+answer() {  # answer KIND: answers a unit of this kind once; called again until the unit is over
   case $1 in
     instructions | debrief) click_on; key Return ;;
     consent) key 1 Return ;;
@@ -146,7 +147,7 @@ answer() {  # answer KIND: what a person does while such a unit is on, again and
   esac
 }
 
-start() {  # start COMMAND ...: one process of the session; its events go to a file of their own
+start() {  # start COMMAND ...: starts a process of the session, whose events go to a new file
   : >"$out/$name.events"
   "$study" "$@" --db "$db" --events >"$out/$name.events" 2>"$out/$name.log" &
   session=$!
@@ -155,7 +156,7 @@ start_run() {
   start run "$out/$name.toml" --participant P01 --display window --gaze mouse --station test --screen-width-mm 520 \
     --viewing-distance-mm 600 --stimulus "$out/dam.bake" --seed "$seed"
 }
-sit() {  # sit SECONDS: the person answers until the process ends, however it does; its exit status is in `ended`
+sit() {  # sit SECONDS: answers pages until the process ends, at most so long; sets `ended` to its exit status
   local until=$((SECONDS + $1)) what kind
   while alive; do
     if [ $SECONDS -ge $until ]; then
@@ -184,10 +185,11 @@ for ((kill = 1; kill <= kills; ++kill)); do
   stage="kill $kill"
   life_ms=$((RANDOM % 5000))
   if planned; then start resume; else start_run; fi
-  # Not by the one who answers, so that a kill falls anywhere: between two keys, within a trial, while a file is opened.
+  # The kill comes from a separate process, so that it can fall anywhere: between two keys, within a trial, or
+  # while a file is opened.
   (sleep "$((life_ms / 1000)).$(printf %03d $((life_ms % 1000)))"; exec kill -9 "$session") 2>/dev/null &
   killer=$!
-  sit 60 2>/dev/null  # the shell tells of every kill
+  sit 60 2>/dev/null  # hides the shell's message about the kill
   kill "$killer" 2>/dev/null || true
   wait "$killer" 2>/dev/null || true
   if [ "$ended" -ne 137 ]; then
@@ -210,7 +212,8 @@ cuts=$(ask "select count(*) from presentation where state = 'interrupted'")
 $(ask "select count(*) from response") answers; $cuts showings cut, with \
 $(ask "select count(*) from frame join presentation using (presentation_id) where state = 'interrupted'") frames kept"
 
-# A disk that fills in the middle of a trial: the file may grow by three pages, and eight seconds of frames need more.
+# Simulates a disk that fills in the middle of a trial: the database may grow by only three pages, but the
+# frames of eight seconds need more.
 new_session full
 write_protocol "$out/full.toml" "60" 8
 start_run

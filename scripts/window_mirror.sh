@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# The experimenter's mirror of the participant's view on a virtual screen: both windows are there and show the same page, picture
-# and black, the database says so, and without --mirror there is neither. Without --mirror-reveal stimuli are black in it. Fails
-# when one of these is not so.
-# Prints the timing of a stimulus with the mirror and without.
+# Tests the experimenter's mirror of the participant's view on a virtual screen. With --mirror there are two
+# windows, and both show the same page; with --mirror-reveal they also show the same stimulus, which is
+# otherwise black in the mirror. The database must record the mirror. Without --mirror there is one window and
+# no record. Fails if any of this is not so. Prints the timing of stimuli with and without the mirror.
 # usage: scripts/window_mirror.sh [FOLDER]    default: out/window_mirror. Takes a minute.
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=${1:-out/window_mirror}
 study=${VIP_STUDY:-build/dev/bin/vip-study}
-size=1600x900  # the participant's 800x450 in one corner, the mirror's 640x360 in the opposite one
+size=1600x900  # the participant's window, 800x450, is in one corner; the mirror, 640x360, in the opposite one
 
 . scripts/window_lib.sh
 db=$out/study.db
@@ -18,10 +18,10 @@ bake_dam "$out/dam.bake"
 screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
-# The pilot with one long setting.
+# The pilot with a single setting of the frame rate.
 sed -e 's/^mean_fps = .*/mean_fps = [20]/' -e 's/^sd_fps = .*/sd_fps = [5]/' protocols/ptpe_pilot.toml >"$out/protocol.toml"
 
-begin() {  # begin CODE [OPTION ...]: a person's session, up to its first page
+begin() {  # begin CODE [OPTION ...]: starts a person's session and waits for its first page
   code=$1 events=$out/$1.events
   shift
   "$study" run "$out/protocol.toml" --db "$db" --participant "$code" --display window --size 800x450 --stimulus "$out/dam.bake" \
@@ -30,7 +30,7 @@ begin() {  # begin CODE [OPTION ...]: a person's session, up to its first page
   until_begins instructions
 }
 begun() { tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; }
-until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms are over
+until_begins() {  # until_begins KIND: waits until a unit of this kind is shown and takes input
   local give_up=$((SECONDS + 60))
   until [ -e "$events" ] && begun "$1"; do
     [ $SECONDS -lt $give_up ] && alive || { cat "$out/$code.log" >&2; echo "window_mirror: $code comes to no $1" >&2; exit 1; }
@@ -38,11 +38,11 @@ until_begins() {  # until_begins KIND: such a unit is on, and its first 300 ms a
   done
   sleep 1
 }
-until_shown() {  # until_shown STATE: of the showing of this session
+until_shown() {  # until_shown STATE: waits until the showing of this session has this state
   until [ "$(ask "select count(*) from presentation join trial using (trial_id) join session using (session_id) where participant = '$code' and presentation.state = '$1'")" = 1 ]; do sleep 0.1; done
 }
-to_stimulus() {  # two seconds into it
-  until begun consent; do key Return; sleep 0.5; done  # taken once the time to read is over
+to_stimulus() {  # goes on to the stimulus and waits until it has run for two seconds
+  until begun consent; do key Return; sleep 0.5; done  # ignored in the shortest reading time
   until_begins consent
   key 1 Return
   until_begins stimulus
@@ -53,9 +53,9 @@ finish() { kill -INT "$session"; wait "$session" || true; session=; }
 ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
 windows() { xdotool search --onlyvisible --name '^vip-study' | wc -l; }
 mirrored() { ask "select group_concat(kind) from event join session using (session_id) where participant = '$code' and kind in ('mirror opened', 'pages mirrored')"; }
-# Mean and spread of grey, 0 to 100, of the participant's picture and of the mirror's.
+# greys NAME CROP: prints mean and standard deviation of the grey values, 0 to 100, in a part of a screenshot.
 greys() { convert "$out/$1.png" -crop "$2" -colorspace Gray -format '%[fx:round(100*mean)] %[fx:round(100*standard_deviation)]' info:; }
-same() {  # same WHAT: on a picture of the screen, and more than one grey
+same() {  # same WHAT: checks on a screenshot that both windows have the same greys, and more than one grey
   shoot "$1"
   set -- "$1" $(greys "$1" 800x450+0+0) $(greys "$1" 640x360+960+540)
   expect "the mirror shows the $1 (mean and spread: $2 $3, $4 $5)" yes \
@@ -88,14 +88,14 @@ expect "events with --mirror" "pages mirrored" "$(mirrored)"
 
 begin P02
 expect "windows without" 1 "$(windows)"
-# Without a window manager nobody gives a second session's window the keyboard.
+# Without a window manager the window of a second session does not get the keyboard focus by itself.
 xdotool windowfocus "$(xdotool search --onlyvisible --name '^vip-study$')"
 to_stimulus
 until_shown played
 sleep 1
 finish
 expect "events without" "" "$(mirrored)"
-# What a loaded machine does to either is no finding; on a quiet one the two are alike.
+# The timing is printed and not checked, because it depends on the load. On a quiet machine both are alike.
 ask "select 'timing of ' || participant || iif(participant = 'P02', ' without', ' with') || ' the mirror: ' || verdict || ', ' || late_frames ||
   ' of ' || frames || ' frames late, worst ' || round(worst_late_ms, 2) || ' ms' from presentation join trial using (trial_id)
   join session using (session_id) where presentation.state = 'played' order by participant" | sed 's/^/        /'

@@ -1,8 +1,8 @@
-# What the files of a session at the window hold after each of its processes, however that ended; looked at by window_kills.sh.
-# Sourced, with $study and $out as there, a function `fail WORDS`, and of the session: $name, $db, $cut (its showing under way when
-# the last process ended; empty: none), $first_open (position of its first unit that is not done), and what window_kills.sh keeps in
-# $out/$name.*.
-# What stands in a file after a kill is read from a copy, so that the next process finds the file as it was left.
+# Checks what the files of a session at the window must hold after each of its processes, however the process
+# ended. window_kills.sh sources this file and sets $study, $out, a function `fail WORDS`, and for each
+# session: $name, $db, $cut (the showing that was under way when the last process ended; empty: none),
+# $first_open (position of the first unit that is not done) and the files $out/$name.*.
+# After a kill the database is read from a copy, so that the next process finds it as the kill left it.
 copy() {
   rm -f "$out"/copy/*
   cp "$db"* "$out/copy/"
@@ -13,23 +13,24 @@ planned() { [ -s "$db" ] && copy && [ "$(ask "select count(*) from sqlite_schema
 
 wanted() { [ "$2" = "$3" ] || fail "$1: '$3' instead of '$2'"; }
 none() { [ -z "$2" ] || fail "$1: $(echo "$2" | head -n 5 | tr '\n' ';')"; }
-kept() {  # kept WHAT FILE QUERY: what was there is there still, unchanged; remembers what is there now
+kept() {  # kept WHAT FILE ROWS: checks that all rows stored in FILE are among ROWS; then stores ROWS in FILE
   [ -e "$2" ] || : >"$2"
   echo "$3" | sed '/^$/d' | sort >"$2.now"
   none "$1 lost or changed" "$(comm -23 "$2" "$2.now")"
   mv "$2.now" "$2"
 }
 
-check() {  # every promise, of a session whose process has just ended
+check() {  # checks every promise for a session whose process has just ended
   "$study" status --db "$db" >"$out/$name.status" 2>&1 || fail "status: $(cat "$out/$name.status")"
   copy
   wanted integrity ok "$(ask "pragma integrity_check")"
   none "foreign keys" "$(ask "pragma foreign_key_check")"
-  # Nobody was asked again what was done before this process, and it went on where the last one was cut.
+  # The process showed no unit again that was already done, and it began with the first unit that was open.
   sed -n 's/^begins P01 \([0-9]*\) .*/\1/p' "$out/$name.events" >"$out/$name.begun"
   none "asked twice" "$(sort "$out/$name.begun" | comm -12 - <(sort "$out/$name.done"))"
   if [ -s "$out/$name.begun" ]; then wanted "goes on at" "$first_open" "$(head -n 1 "$out/$name.begun")"; fi
-  # What was announced is there; at most one unit more was safe and not told yet.
+  # Every unit that was announced as done is stored as done. At most one unit is stored as done but not yet
+  # announced.
   sed -n 's/^done P01 \([0-9]*\) .*/\1/p' "$out/$name.events" >>"$out/$name.said"
   ask "select position from unit where state = 'done'" >"$out/$name.done"
   none "announced and lost" "$(sort "$out/$name.said" | comm -23 - <(sort "$out/$name.done"))"
@@ -39,7 +40,7 @@ check() {  # every promise, of a session whose process has just ended
   [ "$(echo "$untold" | wc -w)" -le 1 ] || fail "done and not announced: $untold"
   echo "$untold" | sed '/^$/d' >>"$out/$name.said"
   first_open=$(ask "select min(position) from unit where state <> 'done'")
-  # Every answer stays as it was given, and no question of a unit has two.
+  # Every answer stays as it was given, and no question of a unit has two answers.
   kept answers "$out/$name.answers" "$(ask "select * from response")"
   kept notes "$out/$name.log_events" "$(ask "select event_id, utc, kind from event")"
   if [ -e "$db.personal" ]; then
@@ -51,7 +52,7 @@ check() {  # every promise, of a session whose process has just ended
   none "answered twice" "$(ask "select unit_id, question_id from response group by 1, 2 having count(*) > 1")"
   none "done without an answer" "$(ask "select position from unit u where state = 'done' and trial_id is not null and
     (select count(*) from response r where r.unit_id = u.unit_id) <> 2")"
-  # Only the newest showing may still be called running: what ended before it is marked.
+  # Only the newest showing may have the state "running": earlier showings that were cut must be marked.
   none "interrupted and not marked" "$(ask "select presentation_id from presentation where state = 'running' and
     presentation_id < (select max(presentation_id) from presentation)")"
   if [ -s "$out/$name.begun" ] && [ -n "$cut" ]; then

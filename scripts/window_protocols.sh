@@ -1,12 +1,16 @@
 #!/usr/bin/env bash
-# Full sessions of whole protocols at the participant's window, consent to thank-you, by real keys and the real mouse on a
-# virtual screen; then everything is looked for in the database and in the exports. Fails when anything is missing.
-# usage: scripts/window_protocols.sh [--out FOLDER] [PROTOCOL ...]   default: out/window_protocols, and the four named below
+# Plays complete sessions of protocols at the participant's window, from consent to the last page, with real
+# key and mouse events on a virtual screen. Then checks that the database and the exports contain everything;
+# fails if not.
+# usage: scripts/window_protocols.sh [--out FOLDER] [PROTOCOL ...]
+#        default: out/window_protocols, and ptpe_pilot task1 task2 task2_lab
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database, exports and logs go to FOLDER/PROTOCOL.
 #
-# Shortened, so that a session takes two to four minutes on two cores: live fluid has n_* of 64 and 128 and stimuli of 0.3 s,
-# drawn by the processor at a third of a second a frame; the pilot plays a bake, 1.5 s each. Rests of 30 and 60 s last 2 s, black
-# pauses of 5 s one, the two minutes between scenes 3 s. Units, questions, other pauses and shortest reading times stay.
+# The protocols are shortened, so that a session takes two to four minutes on two cores. Live fluid has an n_*
+# of 64 or 128 and stimuli of 0.3 s, which the processor draws in a third of a second for each frame. The
+# pilot plays a bake, with stimuli of 1.5 s. Rests of 30 and 60 s are cut to 2 s, black pauses of 5 s to 1 s,
+# and the two minutes between scenes to 3 s. Units, questions, other pauses and shortest reading times are
+# unchanged.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=out/window_protocols
@@ -43,7 +47,8 @@ begun=$SECONDS
 session=$!
 
 ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
-# A page is on where both ends of its button show one grey: it waits, is open, or lies under the mouse.
+# True if a page is shown: both ends of its button then have the same grey, which is one of three (the button
+# waits, can be pressed, or is under the mouse).
 page_is_on() {
   local half=$((height * 110 / 1000)) ends
   ends=$(import -window root -crop "$((2 * half + 1))x1+$((width / 2 - half))+$button_y" -depth 8 rgb:- |
@@ -51,7 +56,8 @@ page_is_on() {
   case $ends in " 48 48 51" | " 70 71 75" | " 90 92 97") true ;; *) false ;; esac
 }
 
-# What is answered: the questions with one right answer by name, the others differently from unit to unit.
+# Prints the answer to a question. Questions with one acceptable answer are listed by code; the answers to
+# others differ from unit to unit.
 answer_to() {  # answer_to CODE POSITION PLACE MIN MAX
   case $1 in
     take_part | acuity | data_shared) echo 1 ;;
@@ -64,9 +70,9 @@ answer_to() {  # answer_to CODE POSITION PLACE MIN MAX
   esac
 }
 
-give() {  # give KIND MAX ANSWER: to the question that has the focus, and on to the next
+give() {  # give KIND MAX ANSWER: answers the question that has the focus, and moves on to the next question
   local i
-  if [ "$1" != number ] && [ "$2" -gt 9 ]; then  # more than a digit: by the arrows, from the lowest score
+  if [ "$1" != number ] && [ "$2" -gt 9 ]; then  # scores of two digits: chosen by arrow keys from the lowest
     for ((i = 0; i <= $3; ++i)); do key Right; done
     key Return
   else
@@ -74,7 +80,7 @@ give() {  # give KIND MAX ANSWER: to the question that has the focus, and on to 
   fi
 }
 
-picture_once() {  # picture_once NAME: half a second from now, the first time it comes
+picture_once() {  # picture_once NAME: waits half a second and stores a screenshot, only once for each NAME
   case $pictured in *" $1 "*) return 0 ;; esac
   pictured+=" $1 "
   sleep 0.5
@@ -83,13 +89,13 @@ picture_once() {  # picture_once NAME: half a second from now, the first time it
 confirm() { if [ $((position % 2)) = 0 ]; then click_on; else key Return; fi; }
 stuck() { shoot stuck; echo "window_protocols: $protocol is stuck at unit $position ($kind $block)${1:+, $1}" >&2; exit 1; }
 
-# The pages of a trial are its protocol's "ask" steps.
+# A trial has one page for each "ask" step of its protocol.
 mapfile -t asks < <(sed -n '/^steps = /s/"/\n/gp' "$out/$protocol.toml" | sed -n 's/^ask //p')
 
-answer_page() {  # one page of the unit under way, whose questions are $1 (as a list for SQL, empty: all of the block)
+answer_page() {  # answer_page CODES: answers a page of the unit; CODES: its questions, for SQL; empty: all
   local code what least most personal place=0 answer count=0 name
   name=$(printf '%02d_%s_%s' "$position" "$kind" "${1:+$page}")
-  sleep 0.4  # what comes in the first 300 ms of a page counts for nothing
+  sleep 0.4  # a page ignores input in its first 300 ms
   local first=
   case $pictured in *" $kind$page "*) ;; *) first=yes pictured+=" $kind$page " ;; esac
   [ -z "$first" ] || shoot "$name"
@@ -111,7 +117,7 @@ answer_page() {  # one page of the unit under way, whose questions are $1 (as a 
     sleep 0.1
   done
 }
-# Until what was answered is in the database, or a page of a unit that is no trial is over.
+# True if the answers to the page are in the database (in a trial), or if the unit is done (outside trials).
 settled() {
   if [ "$trial" = 1 ]; then
     [ "$(ask "select count(*) from response join unit using (unit_id) where position = $position")" -ge "$wanted" ]
@@ -125,7 +131,7 @@ moved=$SECONDS
 while alive; do
   [ $((SECONDS - moved)) -lt 300 ] || stuck
   read -r what _ at now_kind now_block < <(tail -n 1 "$out/events" 2>/dev/null; echo) || true
-  if [ "${what:-}" != begins ]; then  # between two units: where a trial ends in a rest, it is on now
+  if [ "${what:-}" != begins ]; then  # between two units; if trials end with a rest, the rest is shown now
     [ "$trial" = 0 ] || ! grep -q '^steps = .*"rest ' "$out/$protocol.toml" || picture_once rest
     sleep 0.1
     continue
@@ -160,7 +166,7 @@ cat "$out/log" >&2
 [ $status -eq 0 ] || { echo "window_protocols: vip-study ended with $status" >&2; exit 1; }
 echo "        $protocol took $((SECONDS - begun)) s"
 
-# What the plan says beforehand, without a database.
+# Compares the database with the numbers of units and trials that vip-study check predicts.
 plan=$("$study" check "$out/$protocol.toml" --refresh 60 2>/dev/null | sed -n 's/^plan: //p')
 units=${plan%% units*}
 trials=${plan#*, }

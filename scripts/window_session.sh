@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A whole session at the participant's window, answered by real keys and the real mouse on a virtual screen.
-# Fails when the database lacks an answer. usage: scripts/window_session.sh [FOLDER]    default: out/window_session
+# Plays a whole session at the participant's window; real key and mouse events on a virtual screen answer it.
+# Fails if the database lacks an answer.
+# usage: scripts/window_session.sh [FOLDER]    default: out/window_session
 # Takes vip-study from $VIP_STUDY, else from build/dev. Screenshots, database and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +16,7 @@ screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
 
-# The demonstration with one method, which a bake can show.
+# The demonstration protocol with one method, so that one bake holds all stimuli.
 sed -e 's/^method = .*/method = ["HiRes"]/' -e 's/^order = "constrained".*/order = "shuffle"/' -e '/^never_adjacent/d' \
   protocols/demo.toml >"$out/protocol.toml"
 
@@ -25,9 +26,10 @@ exec 3<>"$out/keys"  # the experimenter's keyboard
   --station test --screen-width-mm 520 --viewing-distance-mm 600 --stimulus "$out/dam.bake" --trial-seconds 2 \
   --seed 3 --events --console <&3 >"$out/events" 2>"$out/log" &
 session=$!
-# A key meant for one page must not fall on the next, which takes keys 300 ms later.
+# True if the same unit is still shown. Checked before each key, so that no key reaches the next page, which
+# accepts keys after 300 ms.
 still_on() { [ "$(under_way)" = "begins P01 $position $kind $id" ]; }
-answer() {  # answer KIND ID: what is done while such a unit is on; again and again until it is over
+answer() {  # answer KIND ID: answers a unit of this kind once; called again until the unit is over
   case $1 in
     instructions | debrief)
       click_on
@@ -42,7 +44,7 @@ answer() {  # answer KIND ID: what is done while such a unit is on; again and ag
       key Tab
       click_on ;;
     fms) key Right Return Return ;;
-    practice | stimulus | repeat)  # while the stimulus is on, these keys count for nothing
+    practice | stimulus | repeat)  # these keys have no effect while the stimulus is shown
       for k in 5 Return 1 Return; do still_on && key "$k"; done
       [ "$1" != practice ] || shoot trial_answers
       still_on && click_on ;;
@@ -67,7 +69,7 @@ while alive; do
   [ $SECONDS -lt $give_up ] || { shoot stuck; echo "window_session: stuck at: $(under_way)" >&2; exit 1; }
   read -r what _ position kind id < <(under_way; echo) || true
   [ "$what" = begins ] || { sleep 0.1; continue; }
-  sleep 0.45  # what comes in the first 300 ms of a page counts for nothing
+  sleep 0.45  # a page ignores input in its first 300 ms
   if [ "$shot" != "$position" ]; then
     shot=$position
     shoot "$(printf '%02d_%s_%s' "$position" "$kind" "$id")"
@@ -119,7 +121,7 @@ case $personal in
   *) echo "FAILED  personal file holds: $personal"; failed=1 ;;
 esac
 
-# A display that is lost in the middle of a trial, and the session resumed on another one.
+# A display is lost in the middle of a trial; the session is then resumed on another display.
 rm -f "$out"/lost.db* "$out/lost_events"
 screen_of "$out/screen" 800x600
 DISPLAY=:$(cat "$out/screen") "$study" run "$out/protocol.toml" --db "$out/lost.db" --participant P02 --observer random \

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Trials of ten seconds at the participant's window on a virtual screen, against the real clock: the certificate that is printed
-# must say what the frames' records say, and must mark trials that a load, a frozen process or a minimised window has spoilt.
+# Plays trials of ten seconds at the participant's window on a virtual screen, against the real clock. The
+# timing certificate that is printed must agree with the records of the frames, and must mark trials that were
+# disturbed by load or a frozen process. A trial whose window is minimised must be cut and shown again.
 # usage: scripts/window_timing.sh [FOLDER]    default: out/window_timing
 # Takes vip-study from $VIP_STUDY and set-minimised from $VIP_SET_MINIMISED, else both from build/dev.
-# Whether undisturbed trials pass depends on the machine, and is told, not asked.
+# Whether undisturbed trials pass depends on the machine, and is printed but not checked.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=${1:-out/window_timing}
@@ -19,10 +20,10 @@ export DISPLAY
 
 name=
 ask() { sqlite3 -cmd '.timeout 2000' "$out/$name.db" "$1"; }
-write_pilot() {  # write_pilot MEANS SDS: the pilot with these settings only, of ten seconds each
+write_pilot() {  # write_pilot MEANS SDS: writes the pilot with these settings only, of ten seconds each
   sed -e "s/^mean_fps = .*/mean_fps = [$1]/; s/^sd_fps = .*/sd_fps = [$2]/" protocols/ptpe_pilot.toml >"$out/$name.toml"
 }
-begin() {  # begin [COMMAND ...]: the session of a simulated person at a real window, run by COMMAND
+begin() {  # begin [COMMAND ...]: starts a simulated person's session at a real window, by COMMAND
   "$@" "$study" run "$out/$name.toml" --db "$out/$name.db" --participant P01 --observer random --display window \
     --stimulus "$out/dam.bake" --seed 5 --events >"$out/$name.events" 2>"$out/$name.log" &
   session=$!
@@ -35,15 +36,15 @@ end() {
   sed -n '/^Timing certificate/,$p' "$out/$name.events" >"$out/$name.certificate"
   sed "s/^/        /" "$out/$name.certificate"
 }
-under_way() {  # until the trial under way has been on for a second: frames are written every half second
+under_way() {  # waits until ten frames of the trial are stored; frames are stored every half second
   until [ "$(ask "select count(*) > 9 from frame join presentation using (presentation_id) where state = 'running'" 2>/dev/null)" = 1 ]; do
     alive || { echo "window_timing: no trial came" >&2; exit 1; }
     sleep 0.05
   done
 }
 
-# Mean, standard deviation, late frames and worst lateness of each setting, from the frames' records and nothing else; one
-# showing a setting.
+# Computes mean, standard deviation, number of late frames and worst lateness of each setting, from the
+# records of the frames alone. Each setting is shown once.
 recomputed() {
   ask "select c.mean_fps, c.sd_fps, p.end_ns, p.start_ns + f.scheduled_ns + f.submitted_ns, f.submitted_ns
     from frame f join presentation p using (presentation_id) join cell c on c.cell = p.cell where p.state = 'played'
@@ -58,9 +59,9 @@ recomputed() {
       mean = $1; sd = $2; end = $3; onset = $4; late += $5 > 500000; if ($5 > worst) worst = $5 }
     END { tell() }'
 }
-# The same as printed, and the words that mark a row.
+# Prints the same values as the certificate gives them.
 printed() { awk '$3 == 1 && NF >= 13 { print $1, $2, $4, $6, $8, $9 }' "$out/$name.certificate"; }
-differences() {  # nothing, or the rows that differ by more than the last digit printed
+differences() {  # prints the rows that differ by more than one in the last printed digit
   paste -d ' ' "$out/$name.frames" <(printed) | awk 'NF != 12 { print; next }
     { for (i = 1; i <= 6; i++) { d = $i - $(i + 6); if (d > 0.0015 || d < -0.0015) { print; next } } }'
 }
@@ -82,7 +83,7 @@ check_certificate 4
 echo "        display: $(ask "select display from session")"
 echo "        scheduling: $(ask "select detail from event where kind = 'scheduling'")"
 
-# Twice as many busy loops as cores, and they come first.
+# Load: twice as many busy loops as cores, which have a higher priority than the session (nice -n 5).
 name=load
 write_pilot 50 "0, 5"
 loops=()
@@ -98,7 +99,8 @@ wait "${loops[@]}" 2>/dev/null || true
 check_certificate 2
 expect "load: some setting does not pass" 1 "$(ask "select count(*) > 0 from presentation where verdict <> 'pass'")"
 
-# The process stands still for 300 ms: six frames of 50 ms are due meanwhile, and the first is shown late by what is left.
+# The process is stopped for 300 ms. Six frames of 50 ms are due in this time; the first of them is shown late
+# by the rest of the 300 ms.
 name=frozen
 write_pilot 20 0
 begin
@@ -113,7 +115,8 @@ expect "frozen: the worst by 250 ms or more" 1 "$(ask "select worst_late_ms >= 2
 expect "frozen: the longest interval shows it" 1 "$(ask "select longest_ms >= 290 from presentation")"
 expect "frozen: the verdict" fail "$(ask "select verdict from presentation")"
 
-# A minimised window shows nothing: the trial is cut at once, waits, and is shown again when the window is back.
+# A minimised window shows nothing: the trial is cut at once, and it is shown again after the window is
+# restored.
 name=minimised
 write_pilot 20 0
 begin

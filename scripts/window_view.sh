@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# vip-view's panel on a virtual screen, by real keys: the schedule comes and goes, and effects are turned off and on while the water
-# goes on. Fails when a picture or a printed line is not as it should be.
+# Tests vip-view's panel with real key events on a virtual screen: the schedule is shown and hidden, and
+# effects are turned off and on while the fluid runs. Fails if a picture or a printed line is not as expected.
 # usage: scripts/window_view.sh [FOLDER]    default: out/window_view. Takes half a minute.
 # Takes vip-view from $VIP_VIEW, else from build/dev. Pictures and logs go to FOLDER.
 set -euo pipefail
@@ -14,12 +14,12 @@ rm -f "$out"/*.{png,log,toml}
 screen_of "$out/screen" "$size"
 DISPLAY=:$(cat "$out/screen")
 export DISPLAY
-# The splash with more effects than one.
+# The splash scene with two further effects.
 { cat data/scenes/splash.toml; printf '\n[[effect]]\nkind = "cohesion"\ntension_n_m = 50.0\n\n[[effect]]\nkind = "adhesion"\nwork_n_m = 20.0\n'; } >"$out/scene.toml"
 
 stdbuf -oL "$view" "$out/scene.toml" --method Ours --n-star 64 --backend cpu --size "$size" >"$out/view.log" 2>&1 &
 session=$!
-until_line() {  # until_line PATTERN: it stands in the log
+until_line() {  # until_line PATTERN: waits until a line of the log matches
   local give_up=$((SECONDS + 60))
   until grep -q "$1" "$out/view.log"; do
     [ $SECONDS -lt $give_up ] && alive || { shoot stuck; cat "$out/view.log" >&2; echo "window_view: no line says $1" >&2; exit 1; }
@@ -29,9 +29,10 @@ until_line() {  # until_line PATTERN: it stands in the log
 }
 last() { tail -n 1 "$out/view.log" | sed "s/^frame [0-9]*: //"; }
 frame() { tail -n 1 "$out/view.log" | sed -n 's/^frame \([0-9]*\): .*/\1/p'; }
-# What stands at the upper right corner: the schedule's dark head, the room's bright sky, or a screen where nothing was drawn yet.
+# Prints what the upper right corner shows: the dark head of the schedule, the bright sky of the room, or
+# nothing (before the first picture).
 corner() { read -r red _ blue <<<"$(pixel $((width - 60)) 20)" && if [ "$red" -gt 100 ]; then echo room; elif [ "$blue" -gt 5 ]; then echo schedule; else echo nothing; fi; }
-until_corner() {  # until_corner WANTED: or ten seconds
+until_corner() {  # until_corner WANTED: waits until the corner shows WANTED, at most ten seconds
   local give_up=$((SECONDS + 10))
   until [ "$(corner)" = "$1" ] || [ $SECONDS -ge $give_up ]; do sleep 0.3; done
 }
