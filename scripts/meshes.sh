@@ -12,7 +12,7 @@ triangles='
     for (k = 0; k < points; ++k) { next_k = (k + 1) % points; quad(from + k, from + next_k, to + next_k, to + k) }
   }'
 
-# A solid hull: 1.2 m long, 0.44 m wide, 0.3 m deep, pointed at both ends, with a deck that rises to both ends.
+# A solid hull: 1.2 m long, 0.44 m wide, 0.3 m deep; both ends are pointed, and the deck rises to them.
 awk "$triangles"'
   BEGIN {
     pi = atan2(0, -1); stations = 24; points = 18; keel = 12

@@ -3,8 +3,8 @@
 # a table; fails if a defect is detected by no test.
 # usage: scripts/planted_defects.sh [NAME ...]   default: all
 #        scripts/planted_defects.sh --list       lists the defects
-#        scripts/planted_defects.sh --check      checks, without building, that each defect can still be planted
-#                                                and that docs/results.md lists it
+#        scripts/planted_defects.sh --check      checks that each defect can still be planted and
+#                                                that docs/results.md lists it; builds nothing
 # The copy and its build are in build/planted and are reused. Logs go to out/planted_defects.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2

@@ -15,8 +15,8 @@ export VIP_STATE_DIR=$out/state  # keeps the pages' exports out of the user's ow
 [ $# -gt 0 ] || set -- README.md docs/*.md
 
 # Columns: PAGE | BEGINNING OF THE COMMAND | HOW IT RUNS | WHY | TEST
-# HOW IT RUNS is one of: "person" (keys on a virtual screen answer the pages of the command), a sed script that
-# changes the command, "skip", or "slow" (the command is skipped only in a quick run).
+# HOW IT RUNS is one of: "person" (keys on a virtual screen answer the pages of the command), a sed script
+# that changes the command, "skip", or "slow" (the command is skipped only in a quick run).
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run protocols/ptpe_pilot.toml|person||

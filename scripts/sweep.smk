@@ -31,7 +31,7 @@ def program(name):
 
 
 def batches_of(command):
-    """The keys that the command lists, BATCH for each job. A job is named by its first key and its number of keys."""
+    """The listed keys, BATCH for each job. A job is named by its first key and the number of its keys."""
     listed = subprocess.run(f"{command} --list", shell=True, text=True, stdout=subprocess.PIPE)
     if listed.returncode != 0:
         raise WorkflowError(f"{command} --list: exit status {listed.returncode}")

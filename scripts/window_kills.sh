@@ -24,7 +24,7 @@ export DISPLAY
 failures=0
 fail() { echo "FAILED  $name, $stage: $*"; failures=$((failures + 1)); }
 
-write_protocol() {  # write_protocol FILE MEANS SECONDS: with trials and each kind of page that stores an answer
+write_protocol() {  # write_protocol FILE MEANS SECONDS: trials and each kind of page that stores an answer
   cat >"$1" <<END
 format = 2
 name = "$name"
