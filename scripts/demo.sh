@@ -19,7 +19,7 @@ phase() {  # phase TEXT: ends the last phase and starts the next
   phases+=("$1")
   printf '\n== %s\n' "$1"
 }
-run() {  # run COMMAND...: prints it, then runs it
+run() {  # run COMMAND...: prints the command, then runs it
   printf '\n$ %s\n' "$*"
   "$@" </dev/null
 }

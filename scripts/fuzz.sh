@@ -51,7 +51,7 @@ for format in "${formats[@]}"; do
   read -r ended runs took <<<"$(grep -ha '^Done [0-9]* runs' "${logs[@]}" | awk '{ n += $2; s += $5 } END { print NR, n + 0, s + 0 }')"
   cover=$({ grep -hoa ' cov: [0-9]*' "${logs[@]}" || true; } | awk '$2 > most { most = $2 } END { print most }')
   found=$(find "$out/$format/found" -type f | wc -l)
-  # A run that did not end by itself has failed, whether or not it left an input.
+  # A job that did not end by itself has failed, even if it left no input.
   [ "$found" -eq 0 ] && [ "$ended" -eq "$each" ] || failed=1
   [ "$ended" -eq "$each" ] || took=cut
   printf '%-12s %12s %8s %10s %9s\n' "$format" "$runs" "$took" "${cover:-?}" "$found"

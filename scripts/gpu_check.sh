@@ -11,7 +11,7 @@ failed=0
 
 note() { printf '%-34s %s\n' "$1" "$2" | tee -a "$table"; }
 
-step() {  # step NAME COMMAND...: runs it, keeps its log, notes pass or fail
+step() {  # step NAME COMMAND...: runs the command, keeps its log, adds ok or FAILED to the table
   local name=$1 start=$SECONDS
   shift
   if "$@" >"$out/$name.log" 2>&1; then

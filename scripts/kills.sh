@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Injects kills and full disks into every command that stores data, and starts sessions on new databases
-# simultaneously. After each fault it checks that no data are lost, stored twice or changed, and that no command
-# refuses to continue. Then it simulates power cuts in the commands that carry out people's decisions, under both
-# models of a file system (tests/faults/crash_states.hpp), and runs random histories of three stations. It builds
-# what it needs and prints counts. Exit status 1 if any check fails.
+# simultaneously. After each fault it checks that no data are lost, stored twice or changed, and that no
+# command refuses to continue. Then it simulates power cuts in the commands that carry out people's decisions,
+# under both models of a file system (tests/faults/crash_states.hpp), and runs random histories of three
+# stations. It builds what it needs and prints counts. Exit status 1 if any check fails.
 # Usage: scripts/kills.sh [KILLS [SEED [HISTORIES]]]      default 1000 kills, seed 1, 1000 histories
 #        JOBS=n workers side by side, default one for each processor
 set -euo pipefail

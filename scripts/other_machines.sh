@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Runs the CPU tests as another machine would: compiled with other flags, and with other numbers of threads. Prints a table last.
+# Runs the CPU tests as another machine would: compiled with other flags, and with other numbers of threads.
+# Prints a table last.
 # usage: scripts/other_machines.sh [--only "VARIANT ..."] [--target PROGRAM] [FILTER]
 #   VARIANT  native (-march=native), o1 (-O1), threads-1, threads-3, threads-many (twice the cores); default: all
 #   PROGRAM  test program to build and run, such as sim_test; default: all tests that need neither GPU nor minutes
 #   FILTER   regular expression of test names; default: every one
-# Builds go to build/native and build/o1; numbers of threads are tried on build/dev. Logs go to out/other_machines.
+# The native and o1 variants are built in build/native and build/o1; the numbers of threads are tried with
+# build/dev. Logs go to out/other_machines.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 variants="native o1 threads-1 threads-3 threads-many" target=all

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(realpath "${1:-build/package}")
 skip() { echo "package: not tried: $*"; exit 77; }
-[ "$(id -u)" -eq 0 ] || skip "only root makes a root folder for another system"
+[ "$(id -u)" -eq 0 ] || skip "making a root folder for another system needs root"
 command -v debootstrap >/dev/null || skip "debootstrap is missing (apt-get install debootstrap)"
 command -v dpkg-shlibdeps >/dev/null || skip "dpkg-shlibdeps is missing (apt-get install dpkg-dev)"
 command -v file >/dev/null || skip "file is missing (apt-get install file)"

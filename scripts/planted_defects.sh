@@ -59,7 +59,7 @@ defect cells-leak "cells of a wall take part in the pressure" libsim/pressure/co
 defect braked-way "the guard brakes a speed and not its way" $stages/velocity.cpp stability_test 'Divergence.AThousand*' \
   'length(after) > brake.most_speed' 'length(after) > 1e30f'
 
-index_of() {  # index_of NAME
+index_of() {  # index_of NAME: prints the index of the defect
   for i in "${!names[@]}"; do [ "${names[$i]}" = "$1" ] && { echo "$i"; return; }; done
   echo "planted_defects: no defect '$1'; there are: ${names[*]}" >&2
   return 1
@@ -97,7 +97,7 @@ copy_sources() {  # copies the sources of the working tree, committed or not
   touch "${files[@]/#/$copy/}"  # forces a new compilation: an interrupted run may have compiled a defect
 }
 build() { cmake --build "$copy/build/dev" --target "$@" >"$log" 2>&1; }
-run() {  # run PROGRAM FILTER
+run() {  # run PROGRAM FILTER: runs the tests of PROGRAM that match FILTER, with a time limit
   { (cd "$copy" && timeout "${VIP_PLANTED_SECONDS:-300}" "build/dev/tests/$1" --gtest_filter="$2" --gtest_brief=1); } >>"$log" 2>&1
 }
 row() { printf '%-20s %-58s %s\n' "$@" | tee -a "$table"; }
@@ -121,7 +121,7 @@ failed=0
 for program in "${all[@]}"; do  # without a defect all tests must pass
   filter=
   for i in "${chosen[@]}"; do [ "${programs[$i]}" != "$program" ] || filter+="${filters[$i]}:"; done
-  run "$program" "$filter-*Gpu.*:*Slow.*" || { echo "planted_defects: red without a defect: see $log" >&2; exit 2; }
+  run "$program" "$filter-*Gpu.*:*Slow.*" || { echo "planted_defects: tests fail without a defect: see $log" >&2; exit 2; }
 done
 
 row defect file "caught by"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that ViP-Lab needs. Safe to run again.
 # usage: scripts/setup.sh [PART ...]     without a part: all of them
-#   build    what builds and runs the programs
+#   build    packages that building and running the programs needs
 #   tests    libraries that the tests are compiled with
 #   tools    programs that the tests run
 #   slow     further programs, which only the slow tests run
@@ -11,7 +11,7 @@ set -euo pipefail
 
 build=(
   g++ cmake ninja-build pkg-config
-  # libraries fixed by the project
+  # OpenGL, windows, SQLite, statistics, command lines, OpenXR
   libgl-dev libegl-dev libepoxy-dev libglfw3-dev libx11-dev libimgui-dev libsqlite3-dev libgsl-dev libcli11-dev
   libopenxr-dev libopenxr-loader1
   # texts, TOML, JSON, PNG, compression, checksums, SHA-256

@@ -3,7 +3,7 @@
 # a virtual screen. P01 refuses consent, P02 is excluded by screening, P03 stops during a stimulus and has all
 # data deleted, and P04 stops during a rest and keeps the data. Also tests the experimenter's pause. Fails if
 # a page, an exit status or the database is not as expected, or if a session gets stuck.
-# usage: scripts/window_ends.sh [FOLDER]    default: out/window_ends. Takes three minutes: a rest after a stop is 60 s.
+# usage: scripts/window_ends.sh [FOLDER]    default: out/window_ends. Takes three minutes, because the rest after a stop is 60 s.
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -44,7 +44,7 @@ ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
 until_begins() {  # until_begins KIND: waits until a unit of this kind is shown and takes input
   local give_up=$((SECONDS + 60))
   until tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; do
-    [ $SECONDS -lt $give_up ] && alive || { shoot "${code}_stuck"; echo "window_ends: $code comes to no $1" >&2; exit 1; }
+    [ $SECONDS -lt $give_up ] && alive || { shoot "${code}_stuck"; echo "window_ends: $code: no $1 began within 60 s; see $events" >&2; exit 1; }
     sleep 0.05
   done
   sleep 0.6
@@ -115,7 +115,7 @@ expect "P03: answers to the SSQ" "1 of 16" "$(ask "select sum(score is not null)
 key 2 Return
 page deleted
 key Return
-ended 3 ""  # deleted
+ended 3 ""  # no state: the session was deleted from the database
 expect "P03 is deleted" "1 tombstone, 0 sessions" "$(ask "select (select count(*) from tombstone where participant = 'P03') || ' tombstone, ' ||
   (select count(*) from session where participant = 'P03') || ' sessions'")"
 expect "P03 in the personal file" 0 "$(sqlite3 "$db.personal" "select count(*) from personal where participant = 'P03'")"

@@ -83,7 +83,7 @@ while alive; do
       shoot stimulus
     elif [ "$kind" = practice ]; then
       sleep 1.7
-      key Escape  # during the stimulus: the session goes on, and the trial is shown again
+      key Escape  # interrupts the stimulus; after "go on" the trial is shown again
       sleep 0.6
       shoot stop_question
       key 1 Return

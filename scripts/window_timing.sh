@@ -38,7 +38,7 @@ end() {
 }
 under_way() {  # waits until ten frames of the trial are stored; frames are stored every half second
   until [ "$(ask "select count(*) > 9 from frame join presentation using (presentation_id) where state = 'running'" 2>/dev/null)" = 1 ]; do
-    alive || { echo "window_timing: no trial came" >&2; exit 1; }
+    alive || { echo "window_timing: the session ended before a trial; see $out/$name.log" >&2; exit 1; }
     sleep 0.05
   done
 }
@@ -65,7 +65,7 @@ differences() {  # prints the rows that differ by more than one in the last prin
   paste -d ' ' "$out/$name.frames" <(printed) | awk 'NF != 12 { print; next }
     { for (i = 1; i <= 6; i++) { d = $i - $(i + 6); if (d > 0.0015 || d < -0.0015) { print; next } } }'
 }
-check_certificate() {  # check_certificate SETTINGS
+check_certificate() {  # check_certificate SETTINGS: compares it with the database; SETTINGS: number of rows
   recomputed >"$out/$name.frames"
   expect "$name: settings in the certificate" "$1" "$(printed | wc -l)"
   expect "$name: rows that differ from the frames' records" "" "$(differences)"

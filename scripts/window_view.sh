@@ -22,7 +22,7 @@ session=$!
 until_line() {  # until_line PATTERN: waits until a line of the log matches
   local give_up=$((SECONDS + 60))
   until grep -q "$1" "$out/view.log"; do
-    [ $SECONDS -lt $give_up ] && alive || { shoot stuck; cat "$out/view.log" >&2; echo "window_view: no line says $1" >&2; exit 1; }
+    [ $SECONDS -lt $give_up ] && alive || { shoot stuck; cat "$out/view.log" >&2; echo "window_view: no line of $out/view.log matches $1" >&2; exit 1; }
     sleep 0.1
   done
   sleep 0.6
