@@ -3,7 +3,8 @@
 # a virtual screen. P01 refuses consent, P02 is excluded by screening, P03 stops during a stimulus and has all
 # data deleted, and P04 stops during a rest and keeps the data. Also tests the experimenter's pause. Fails if
 # a page, an exit status or the database is not as expected, or if a session gets stuck.
-# usage: scripts/window_ends.sh [FOLDER]    default: out/window_ends. Takes three minutes, because the rest after a stop is 60 s.
+# usage: scripts/window_ends.sh [FOLDER]    default: out/window_ends
+# Takes three minutes, because the rest after a stop is 60 s.
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database and logs go to FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -44,7 +45,7 @@ ask() { sqlite3 -cmd '.timeout 2000' "$db" "$1"; }
 until_begins() {  # until_begins KIND: waits until a unit of this kind is shown and takes input
   local give_up=$((SECONDS + 60))
   until tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; do
-    [ $SECONDS -lt $give_up ] && alive || { shoot "${code}_stuck"; echo "window_ends: $code: no $1 began within 60 s; see $events" >&2; exit 1; }
+    [ $SECONDS -lt $give_up ] && alive || { shoot "${code}_stuck"; echo "window_ends: $code: the session ended, or no $1 began within 60 s; see $events" >&2; exit 1; }
     sleep 0.05
   done
   sleep 0.6

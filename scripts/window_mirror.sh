@@ -33,7 +33,7 @@ begun() { tail -n 1 "$events" | grep -q "^begins $code [0-9]* $1 "; }
 until_begins() {  # until_begins KIND: waits until a unit of this kind is shown and takes input
   local give_up=$((SECONDS + 60))
   until [ -e "$events" ] && begun "$1"; do
-    [ $SECONDS -lt $give_up ] && alive || { cat "$out/$code.log" >&2; echo "window_mirror: $code: no $1 began within 60 s; see $events" >&2; exit 1; }
+    [ $SECONDS -lt $give_up ] && alive || { cat "$out/$code.log" >&2; echo "window_mirror: $code: the session ended, or no $1 began within 60 s; see $events" >&2; exit 1; }
     sleep 0.05
   done
   sleep 1
