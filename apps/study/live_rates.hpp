@@ -13,7 +13,7 @@ namespace apps {
 /// Display, framing and options for measuring live cells. The display's GL context must be current.
 struct MeasuringPlace {
   study::Display& display;
-  const std::vector<study::FramedScene>& scenes;  ///< as the display frames them; empty for a headset
+  const std::vector<study::FramedScene>& scenes;  ///< scenes as the display frames them; empty for a headset
   double refresh_hz = 0;                          ///< refresh rate of the display, Hz; 0: none or not known
   std::function<void()> each;                     ///< called after every frame; may be empty
   std::function<bool(int cell)> anew;             ///< true: measure even if times are cached; empty: false

@@ -16,13 +16,13 @@ enum class PsychometricForm {
   WeibullLog,  ///< as Weibull, for x in decibels: (x / threshold) is 10^((x - threshold) / 20)
 };
 
-/// "normal", "logistic", "weibull", "weibull_db".
+/// Word of a form in protocols, and back: "normal", "logistic", "weibull", "weibull_db".
 const char* psychometric_word(PsychometricForm form);
 Result<PsychometricForm> psychometric_form(std::string_view word);
 
 struct PsychometricCurve {
   PsychometricForm form = PsychometricForm::Normal;
-  double threshold = 0;  ///< in the unit of the stimulus
+  double threshold = 0;  ///< threshold of F, in the unit of the stimulus
   double shape = 1;      ///< Normal: standard deviation; Logistic: scale; both Weibulls: exponent. Above 0
   double guess = 0;      ///< lower asymptote, 0 to 1
   double lapse = 0;      ///< 1 - upper asymptote, 0 to 1

@@ -39,7 +39,7 @@ bool of_groups(TestKind kind);
 /// True if the test is a model of all single answers.
 bool of_answers(TestKind kind);
 
-/// "two-sided", "less", "greater".
+/// Word of a side, and back: "two-sided", "less", "greater".
 const char* alternative_word(Alternative alternative);
 Alternative alternative_of(const std::string& word);
 
@@ -61,7 +61,7 @@ struct TestOutcome {
   double p = 1;
   std::string estimated;  ///< "mean difference", "Hodges-Lehmann shift", "share above", "log odds ratio"
   double estimate = 0;
-  std::optional<std::array<double, 2>> ci = {};  ///< of the estimate; an end may be infinite
+  std::optional<std::array<double, 2>> ci = {};  ///< interval of the estimate; an end may be infinite
   std::string effect = {};                       ///< name of the effect size; empty: none
   std::optional<double> effect_size = {};
   std::optional<std::array<double, 2>> effect_ci = {};

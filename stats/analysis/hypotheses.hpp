@@ -23,7 +23,7 @@ enum class HypothesisStatus {
   NotTestable,      ///< the study's conditions do not allow the test
   NoData,           ///< no test could be computed
 };
-/// "supported", "partly supported", ...
+/// The status in words: "supported", "partly supported", ...
 const char* status_name(HypothesisStatus status);
 
 struct HypothesisTest {
@@ -81,7 +81,7 @@ struct Hypothesis {
   /// p of the whole claim: the largest p of its tests (after Holm if the plan decides by Holm); 1 if a test
   /// is refused or its estimate lies in the other direction. Empty without any test.
   std::optional<double> p_claim;
-  std::optional<double> p_claim_of_six;  ///< see correct_over_claims
+  std::optional<double> p_claim_of_six;  ///< p_claim as corrected by correct_over_claims()
   std::vector<HypothesisTest> tests;
   std::optional<PairedVerdict> paired;
   std::string paper_rule, paper_text;  ///< empty: the claim has no paper

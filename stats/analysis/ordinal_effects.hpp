@@ -18,7 +18,7 @@ namespace stats {
 struct MethodEffect {
   int method = 0;
   double estimate = 0, se = 0;  ///< logits
-  std::array<double, 2> ci{};   ///< Wald
+  std::array<double, 2> ci{};   ///< Wald interval
   double z = 0, p = 0;
   /// Corrected over all methods of the study but the reference, at this n_*; a method without answers counts
   /// as p = 1.

@@ -71,7 +71,7 @@ enum class Directional {
 };
 
 enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };
-/// "superiority", "equivalence", "non-inferiority", "preference".
+/// The kind in words: "superiority", "equivalence", "non-inferiority", "preference".
 const char* kind_name(HypothesisKind kind);
 
 /// When the paper's procedure counts a test as confirmed, by its uncorrected two-sided p.
@@ -85,7 +85,7 @@ enum class PaperHolds {
 struct MethodClaim {
   /// The procedure by which a paper tested the hypothesis.
   struct Paper {
-    std::string rule;  ///< in words
+    std::string rule;  ///< the procedure in words
     PaperHolds holds = PaperHolds::Significant;
     std::string published;  ///< the paper's verdict on its own data
   };
@@ -99,7 +99,7 @@ struct MethodClaim {
   /// Task 1: margin by score, in points; empty: those of the plan.
   std::map<std::string, double> margins = {};
   bool needs_gaze = false;       ///< not testable unless gaze was tracked
-  bool once_one_sided = false;   ///< see Directional::Once
+  bool once_one_sided = false;   ///< tested one-sided under Directional::Once
   bool larger_families = false;  ///< Task 2: p is also given after Holm over larger families of pairs
   std::string called = {};       ///< Task 2: name of the methods `a` in the printed rule; empty: their own
   std::optional<Paper> paper = {};
@@ -131,8 +131,8 @@ struct AnalysisPlan {
   Directional directional = Directional::None;
   ScoreTests tests = ScoreTests::Paired;
   double confidence = 0.95;       ///< confidence of intervals, in (0, 1)
-  double margin_realism = 0.5;    ///< points on 1 to 7, > 0
-  double margin_sickness = 0.25;  ///< points on 0 to 3, > 0
+  double margin_realism = 0.5;    ///< points of the scale from 1 to 7, > 0
+  double margin_sickness = 0.25;  ///< points of the scale from 0 to 3, > 0
   ExclusionRules exclusions;
   RepeatedPairs repeated_pairs = RepeatedPairs::Share;
   int resamples = 10000;  ///< number of resamples for BCa intervals

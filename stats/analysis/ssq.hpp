@@ -17,7 +17,7 @@ enum class SsqScale { Nausea, Oculomotor, Disorientation, Total };
 inline constexpr std::array ssq_scales{SsqScale::Nausea, SsqScale::Oculomotor, SsqScale::Disorientation,
                                        SsqScale::Total};
 
-/// "nausea", "oculomotor", "disorientation", "total".
+/// Name of the scale: "nausea", "oculomotor", "disorientation", "total".
 const char* ssq_name(SsqScale scale);
 /// Weight of the scale: 9.54, 7.58, 13.92, and 3.74 for the total, which is applied to the sum of the three
 /// unweighted sums.

@@ -47,8 +47,8 @@ struct MethodComparison {
   Result<EquivalenceTest> equivalence = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< test of the differences' normality
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< interval of the mean difference
-  Result<MixedContrast> mixed = Refusal{"not computed"};  ///< from the mixed model of all answers of the
-                                                          ///< score
+  Result<MixedContrast> mixed = Refusal{"not computed"};          ///< difference by the mixed model of all
+                                                                  ///< answers
   /// p of `t`, or of the exact sign test that replaces it.
   std::optional<double> p() const;
   /// Corrected over the pairs of this score and n_*; a refused test counts as not significant.

@@ -29,11 +29,11 @@ inline constexpr const char* share_test_name = "exact permutation test of people
 
 struct ShareTest {
   int participants = 0;
-  double share = 0.5;          ///< mean of the shares
+  double share = 0.5;          ///< mean of the people's shares of choices
   std::array<double, 2> ci{};  ///< Student's t of the shares, within 0 to 1; Clopper-Pearson if all always
                                ///< chose alike; [0, 1] if the shares are equal otherwise
   std::string ci_name;         ///< name of the interval in `ci`, for display
-  double p = 1;                ///< exact
+  double p = 1;                ///< exact p of the permutation test
 };
 
 /// Test of a preference between two methods if people answered more than once: each person's share of choices

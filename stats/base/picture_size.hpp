@@ -10,7 +10,7 @@ struct PictureSize {
 };
 
 inline constexpr int least_picture_side = 16, most_picture_side = 8192;
-/// "1280x720".
+/// The size as text: "1280x720".
 std::string size_words(PictureSize size);
 
 /// Largest number of pixels of a picture, 8192 x 4096. Drawing a picture of fluid takes about 40 bytes of

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t longest_problem = 400;  // bytes; the text may quote a value of any length
 
-/// "known keys here: a, b", followed by the one nearest to `key`.
+/// Advice such as "known keys here: a, b", followed by the known key nearest to `key`.
 std::string known_keys(std::string_view key, const std::map<std::string, AskedKey, std::less<>>& asked) {
   std::vector<std::string> names;
   for (const auto& [name, what] : asked) names.push_back(name);
@@ -32,7 +32,7 @@ std::string known_keys(std::string_view key, const std::map<std::string, AskedKe
   return "known keys here: " + joined(names) + (nearest.empty() ? "" : "; the nearest is " + nearest);
 }
 
-/// "block.question" for "block[3].question[0]".
+/// The path without indices: "block.question" for "block[3].question[0]".
 std::string without_indices(const std::string& path) {
   std::string out;
   bool inside = false;
@@ -44,7 +44,7 @@ std::string without_indices(const std::string& path) {
   return out;
 }
 
-/// "file:line:column".
+/// The place as "file:line:column".
 std::string place_of(const std::string& file, const toml::source_region& region) {
   std::ostringstream out;
   out << file;

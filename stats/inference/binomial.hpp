@@ -23,7 +23,7 @@ struct BinomialTest {
   /// Mid-p: only half of the observed point's probability counts; two-sided it is twice the smaller tail
   /// (Lancaster 1961; Berry and Armitage 1995).
   double p_mid = 0;
-  std::array<double, 2> clopper_pearson{};  ///< exact (Clopper and Pearson 1934)
+  std::array<double, 2> clopper_pearson{};  ///< exact interval (Clopper and Pearson 1934)
   std::array<double, 2> wilson{};           ///< score interval (Wilson 1927)
   std::array<double, 2> wilson_cc{};  ///< score interval with continuity correction (Newcombe 1998, method 4)
   /// Quantiles of Beta(k + 1/2, n - k + 1/2). At k = 0 the lower end is 0, at k = n the upper end is 1.

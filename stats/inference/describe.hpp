@@ -22,7 +22,7 @@ struct Description {
   double q25 = 0, q75 = 0;                ///< quartiles of type 7
   std::optional<double> skewness;         ///< g1 = m3 / m2^1.5, divisor n; empty when all values are equal
   std::optional<double> kurtosis;         ///< excess, g2 = m4 / m2^2 - 3, divisor n
-  std::optional<double> autocorrelation;  ///< of neighbouring values in the order given (lag 1)
+  std::optional<double> autocorrelation;  ///< correlation of neighbouring values (lag 1)
 };
 
 /// Describes the values. Refused: no values, an infinite value.

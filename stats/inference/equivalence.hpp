@@ -23,8 +23,8 @@ struct EquivalenceTest {
   double t_upper = 0, p_upper = 0;
   double p = 0;  ///< the larger of p_lower and p_upper: equivalence is shown if p < alpha
   std::array<double, 2>
-      ci{};  ///< for the estimate, confidence 1 - 2 alpha; it lies inside the margins if equivalence is shown
-  std::size_t n = 0;  ///< pairs
+      ci{};           ///< interval of confidence 1 - 2 alpha; lies inside the margins if equivalence is shown
+  std::size_t n = 0;  ///< number of pairs
   std::size_t n_missing = 0;
 };
 

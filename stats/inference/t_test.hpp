@@ -19,7 +19,7 @@ namespace stats {
 
 struct TTestOptions {
   Alternative alternative = Alternative::TwoSided;
-  double confidence = 0.95;  ///< of `ci` and of the interval of the effect size
+  double confidence = 0.95;  ///< confidence of `ci` and of the effect size's interval
   double null_value = 0;     ///< mean (one sample) or difference of means under the null hypothesis
   /// False leaves out the intervals of effect sizes (they become infinite). They take a thousand times as
   /// long as the test, which matters in simulations.
@@ -41,19 +41,19 @@ struct OneSampleTTest : TTest {
   std::size_t n = 0;
   double mean = 0, sd = 0;
   double cohen_d = 0;                  ///< (mean - null_value) / sd
-  std::array<double, 2> cohen_d_ci{};  ///< by the noncentral t; always two-sided
+  std::array<double, 2> cohen_d_ci{};  ///< interval by the noncentral t; always two-sided
 };
 
 /// Standardised differences follow Lakens (2013). Below, difference = mean_x - mean_y - null_value.
 struct PairedTTest : TTest {
-  std::size_t n = 0;  ///< pairs
+  std::size_t n = 0;  ///< number of pairs
   double mean_x = 0, mean_y = 0, sd_x = 0, sd_y = 0, sd_difference = 0;
   std::optional<double> r;                            ///< correlation; empty when one side is constant
   double cohen_dz = 0;                                ///< difference / sd of the differences
   std::optional<double> hedges_gz;                    ///< dz times Hedges' factor; empty with two pairs
   std::optional<double> cohen_dav;                    ///< difference / root of the mean of both variances
   std::optional<double> cohen_drm;                    ///< dz sqrt(2 (1 - r)); empty without r
-  std::array<double, 2> cohen_dz_ci{};                ///< by the noncentral t; always two-sided
+  std::array<double, 2> cohen_dz_ci{};                ///< interval by the noncentral t; always two-sided
   std::optional<std::array<double, 2>> hedges_gz_ci;  ///< cohen_dz_ci times Hedges' factor
 };
 
@@ -65,7 +65,7 @@ struct IndependentTTest : TTest {
   double cohen_ds = 0;                  ///< difference / pooled sd (refused if the pooled sd is zero)
   std::optional<double> hedges_gs;      ///< ds times Hedges' factor; empty with one degree of freedom
   std::optional<double> glass_delta;    ///< difference / sd of y; empty if y is constant or one value
-  std::array<double, 2> cohen_ds_ci{};  ///< by the noncentral t; always two-sided
+  std::array<double, 2> cohen_ds_ci{};  ///< interval by the noncentral t; always two-sided
 };
 
 /// Tests the mean of x against null_value. Needs two values.

@@ -40,7 +40,7 @@ struct PairDifference {
   double se = 0;
   double se_independent = 0;   ///< standard error that treats answers as independent
   std::array<double, 2> ci{};  ///< Wald interval
-  double p = 0;                ///< of the two-sided Wald test
+  double p = 0;                ///< p of the two-sided Wald test
   double probability = 0;      ///< probability that i is preferred to j
   std::array<double, 2> probability_ci{};
 };
@@ -66,7 +66,7 @@ struct BradleyTerry {
     double f = 0, df1 = 0, df2 = 0, p = 0;
   };
   std::optional<PeopleTest> equal_over_people;
-  double log_likelihood = 0;  ///< without binomial coefficients
+  double log_likelihood = 0;  ///< leaves out the binomial coefficients
   /// Goodness of fit: deviance against one free proportion for each pair; p is empty if no df is left.
   double gof_deviance = 0;
   int gof_df = 0;

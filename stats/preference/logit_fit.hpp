@@ -23,8 +23,8 @@ struct LogitRow {
 struct LogitFit {
   std::vector<double> coefficients;
   std::vector<double> covariance;  ///< inverse information, row after row
-  double log_likelihood = 0;       ///< without binomial coefficients
-  double deviance = 0;             ///< against a free proportion in each row
+  double log_likelihood = 0;       ///< leaves out the binomial coefficients
+  double deviance = 0;             ///< deviance against a free proportion in each row
 
   double variance(std::size_t i, std::size_t j) const { return covariance[i * coefficients.size() + j]; }
 };
@@ -64,8 +64,8 @@ struct CoefficientErrors {
   std::optional<double> df;        ///< degrees of freedom of Student's t; empty: normal distribution
 
   double variance(std::size_t i, std::size_t j, std::size_t size) const { return covariance[i * size + j]; }
-  double quantile(double confidence) const;  ///< two-sided
-  double p(double t) const;                  ///< two-sided
+  double quantile(double confidence) const;  ///< half width of the interval in standard errors
+  double p(double t) const;                  ///< two-sided p of an estimate t standard errors from 0
 };
 
 /// Errors as if answers were independent: the inverse information.

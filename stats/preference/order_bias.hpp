@@ -17,7 +17,7 @@ struct OrderTerm {
   double se = 0;        ///< standard error over people if people_errors() gives one, else se_independent
   double se_independent = 0;   ///< standard error that treats answers as independent
   std::optional<double> df;    ///< degrees of freedom of Student's t for `ci` and `p_wald`; empty: normal
-  std::array<double, 2> ci{};  ///< Wald
+  std::array<double, 2> ci{};  ///< Wald interval
   double p_wald = 0;
   double lrt_chi2 = 0;  ///< likelihood ratio against the model without this term, 1 df; treats answers as
                         ///< independent

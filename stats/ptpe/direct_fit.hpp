@@ -39,7 +39,7 @@ struct DirectFit {
 /// Least squares with any weights of the participants, from sums of monomials that are computed once.
 class DirectModel {
  public:
-  /// `observations` as from PilotTable::observations; every mu > 0 (std::invalid_argument).
+  /// `observations`: those of PilotTable::observations(); every mu > 0 (std::invalid_argument).
   DirectModel(std::span<const PilotObservation> observations, double level);
 
   int participants() const { return static_cast<int>(sums_.size()); }
@@ -68,7 +68,7 @@ class DirectModel {
   std::vector<Sums> sums_;
   double level_;
   double log_mu_centre_ = 0, delta_centre_ = 0;
-  std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest
+  std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest value
 };
 
 /// Test of m = q = 0, which decides if the straight form may be used: Hotelling's T^2 of (m, q) with the

@@ -21,7 +21,7 @@ namespace stats {
 struct FreeCurve {
   double middle = 10, half = 10;       ///< frames/s; e = (delta - middle) / half has no unit
   std::array<double, 3> at{};          ///< level, slope, bend
-  std::array<double, 9> covariance{};  ///< row-major
+  std::array<double, 9> covariance{};  ///< covariance of `at`, row-major
   int participants = 0;
   double confidence = 0.95;
 

@@ -42,9 +42,9 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
 inline constexpr const char* form_rejected = "form_rejected";
 std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
 
-/// "no_band" if the curve has no band; "curve_outside_band" if the direct curve, which the fluid solver
-/// reads, leaves the band at one of `deltas`. A file for the solver then cannot state where the curve is
-/// valid.
+/// The doubt "no_band" if the curve has no band; "curve_outside_band" if the direct curve, which the fluid
+/// solver reads, leaves the band at one of `deltas`. A file for the solver then cannot state where the curve
+/// is valid.
 std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
                                      std::span<const double> deltas);
 

@@ -23,11 +23,11 @@ struct PilotRules {
 /// A participant's slope of the scores on log2 of the mean frame rate, within each standard deviation.
 struct PersonSlope {
   int participant = 0;  ///< PilotRating::participant
-  double slope = 0;     ///< points for each doubling
+  double slope = 0;     ///< points of the scale for each doubling of the frame rate
   double t = 0;         ///< slope / its standard error; infinite without residuals
   int df = 0;
   double p = 1;           ///< one-sided, for a slope below zero
-  bool reversed = false;  ///< p < reverse_level / number of slopes
+  bool reversed = false;  ///< reverse coder: p < reverse_level / number of slopes
 };
 
 /// Drift from the first to the last trial of a session, in points of the scale: t test of the participants'
@@ -60,7 +60,7 @@ inline constexpr double lapse_tail = 0.005;   ///< below this probability the lo
 inline constexpr double lapse_level = 0.001;  ///< level of LapseCount::found()
 
 struct PilotPeople {
-  std::vector<PersonSlope> slopes;  ///< of participants with at least three more ratings than standard
+  std::vector<PersonSlope> slopes;  ///< slopes of participants with at least three more ratings than standard
                                     ///< deviations
   Result<SessionDrift> drift = Refusal{"not computed"};
   Result<LapseCount> lapses = Refusal{"not computed"};

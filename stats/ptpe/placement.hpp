@@ -74,7 +74,7 @@ class Placement {
   PlacementRules rules_;
   std::vector<double> deltas_;  ///< distinct standard deviations, ascending
   int lowest_ = 1;
-  std::vector<double> a_values_, b_values_;  ///< by parameter point
+  std::vector<double> a_values_, b_values_;  ///< value at each parameter point of quest_
   QuestPlus quest_;
   std::vector<int> shown_;
 };

@@ -18,7 +18,7 @@ enum class PlacementTruth {
   Drift    ///< ratings fall steadily, by about one score over the session
 };
 
-/// "model", "linear", "lapses", "drift".
+/// The case in a word: "model", "linear", "lapses", "drift".
 const char* placement_truth_word(PlacementTruth truth);
 
 struct PlacementStudy {
