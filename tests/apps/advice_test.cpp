@@ -55,7 +55,8 @@ std::vector<std::string> literals_of(const std::string& source) {
   return out;
 }
 
-/// The options of each command, from --help: by "vip-bench table1", and for "vip-view" itself.
+/// The options that --help lists, by command ("vip-bench table1"), or by program if it has no commands
+/// ("vip-view").
 class Programs {
  public:
   Programs() {
@@ -125,13 +126,13 @@ const std::vector<Place> shared_places{
     {"apps/study/export_command", {"vip-study export"}},
     {"apps/study/consent_command", {"vip-study consent"}}};
 
-/// Options of a foreign program: nvidia-smi.
+/// Options of nvidia-smi, which is not one of the project's programs.
 const Words of_others{"--query-gpu", "--format"};
 
-/// Words after a program's name that continue the sentence.
+/// Words that continue the sentence after a program's name, so that they are not commands.
 const Words words_of_sentences{"did", "does", "is", "made", "protocol", "read", "that"};
 
-/// Rooms of the libraries that serve one program.
+/// Folders of the libraries that only one program uses, and that program.
 const std::map<std::string, std::string> rooms_of_programs{
     {"libsim/measure/", "vip-bench"},           {"libstudy/sweep/run/", "vip-bench"},
     {"libstudy/analysis/", "vip-stats"},        {"libstudy/power/", "vip-stats"},

@@ -100,8 +100,8 @@ const std::vector<Rule> rules{
     {{"cuda", "cub/", "thrust/"}, {"libsim/exec/"}},
 };
 
-/// Rooms of libstudy that may include these rooms of libsim alone. Displays draw with OpenGL; analyses read
-/// settings and fits from files. None of them runs a fluid.
+/// Folders of libstudy that may include parts of libsim, and the only folders of libsim that each may
+/// include: displays draw with OpenGL, analyses read settings and fits from files. None of them runs a fluid.
 const std::vector<std::pair<std::string, std::vector<std::string>>> parts_of_libsim{
     {"libstudy/analysis/", {"libsim/ptpe/", "libsim/setting/"}},
     {"libstudy/headset/", {"libsim/gl/"}},
@@ -292,7 +292,7 @@ TEST(Architecture, RoomsIncludeLowerFloorsOnly) {
 }
 
 TEST(Architecture, RoomsHaveOneRowEachAndNoneGoRound) {
-  std::map<std::string, int> floors;  // of the rows before
+  std::map<std::string, int> floors;  // floors of the rows so far, by folder
   for (const Room& room : rooms) {
     for (const std::string& other : room.beside) {
       ASSERT_TRUE(floors.contains(other)) << room.folder << " goes to " << other << ", which stands below";

@@ -166,7 +166,8 @@ TEST_F(BakeE2e, InterruptLeavesNothing) {
   EXPECT_TRUE(left_nothing());
 }
 
-/// Otherwise the progress bar would be written into the bake.
+/// The program opens closed standard streams on /dev/null. Otherwise the bake's file could get the number of
+/// stderr, and the progress bar would be written into the bake.
 TEST_F(BakeE2e, ClosedStandardStreamsAreNotTheBakes) {
   Process process(command({"--frames", "100000"}), [] {
     for (const int fd : {STDIN_FILENO, STDERR_FILENO}) ::close(fd);

@@ -78,7 +78,7 @@ TEST(BakePlan, OneBakeServesAllTimingProfilesOfAStimulus) {
     EXPECT_EQ(one.cells.size(), 6u);
     EXPECT_EQ(one.frames, 240);
   }
-  // With an animation error the last frames look further ahead than the end of the trial.
+  // An animation error shifts the content time of a frame, here to 8 ms beyond the end of the trial.
   const auto uneven = plan_of(test::shipped_text("trace_smoothed"));
   ASSERT_THAT(uneven, ::testing::SizeIs(1));
   EXPECT_EQ(uneven.front().frames, std::ceil(4.008 / 0.004166666666666667));

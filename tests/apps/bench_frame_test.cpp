@@ -102,7 +102,8 @@ TEST_F(BenchFrameE2e, StatesThatAreMeasuredAreNoLaunches) {
   EXPECT_EQ(every, launches("2"));
 }
 
-// With levels every fourth frame, measuring each tenth of a hundred frames would meet only two of the four.
+// Levels run every `turn` frames. Measured frames must fall equally often on each frame between two such
+// turns: at a turn of 4, measuring every tenth frame would reach only two of the four.
 TEST(TimedRun, MeasuredStatesMeetEachFrameBetweenTurnsAsOften) {
   sim::Readings readings = sim::readings_of(sim::Preset::Tuned);
   for (const int turn : {1, 2, 4, 6}) {
@@ -121,7 +122,8 @@ TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_TRUE(figures()["divergence"].is_null());
   EXPECT_EQ(text.find("divergence"), std::string::npos) << text;
-  // One projection in a frame of a fifth of a second leaves water denser than 1.5 rho_0, a divergence.
+  // One projection in a frame of a fifth of a second leaves water denser than 1.5 rho_0, which counts as a
+  // divergence.
   ASSERT_EQ(bench("--no-render --substeps 1 --iterations 1 --coarse-cycles 0 --dt 0.2"), 0) << text;
   const auto found = figures()["divergence"];
   EXPECT_GE(found["frame"].get<int>(), 1);

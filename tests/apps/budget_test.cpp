@@ -75,7 +75,8 @@ class BudgetChoice : public ::testing::Test {
     return {stored(reference, 1, 1, 100), stored(reference, 2, 1.001, 100), stored(usual, 1, 1.2, 5),
             stored(usual, 2, 1.21, 5),    stored(eight, 1, 1.1, 9),         stored(eight, 2, 1.11, 9)};
   }
-  /// Chooses a setting; cells that run again take these times.
+  /// Chooses a setting; repeated runs of the usual setting and of eight projections take these times per
+  /// frame.
   sim::SettingFile choose(double budget_ms, double usual_ms, double eight_ms) {
     return study::choose_setting(
         cells(), origin, {plan, budget_ms, study::SweepError::Centre, 10},

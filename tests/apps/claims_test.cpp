@@ -38,7 +38,7 @@ std::string own_realism() {
                   "id = \"realism\"");
 }
 
-/// Pairs, with a choice that has a third answer.
+/// The design with pairs of stimuli, whose question has a third answer, "no difference".
 std::string three_way() {
   std::string text = replaced(own_design(), "order = \"shuffle\"", "order = \"shuffle\"\npairs = true");
   text = replaced(text, "\"stimulus\", \"ask comfort strain\"",

@@ -177,7 +177,7 @@ TEST(ProgramsE2e, ArgumentsAreUtf8OnOneLineAndEchoedShortly) {
   }
 }
 
-/// For a program the same as a missing driver.
+/// Makes the program find no GPU, as if the driver were missing.
 void hide_devices() { ::setenv("CUDA_VISIBLE_DEVICES", "", 1); }
 
 class BackendE2e : public ::testing::Test {

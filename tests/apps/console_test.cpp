@@ -16,7 +16,8 @@ class ConsoleE2e : public ::testing::Test {
     return run_arguments(protocol_, database_, {"--participants", "1", "--clock", "real", "--console"});
   }
   std::int64_t count(const std::string& sql) { return count_in(database_, "SELECT count(*) FROM " + sql); }
-  /// After a stop on request: the cut trial is marked, and the log is copied back.
+  /// Expects the database after a requested stop: the write-ahead log is merged into it, and the trial that
+  /// was cut is marked as interrupted.
   void expect_in_order() {
     EXPECT_FALSE(fs::exists(database_ + "-wal"));
     EXPECT_EQ(count("presentation WHERE state = 'running'"), 0);

@@ -251,7 +251,7 @@ TEST(FactorStudyE2e, GoesFromSimulatedPeopleToThePage) {
   EXPECT_THAT(later.out, HasSubstr("2 of 5 participants are new since r.json"));
   EXPECT_THAT(later.out, HasSubstr("no hypothesis is declared: every result is exploratory"));
 
-  // A preregistration that is younger than the answers is none.
+  // A bundle that was frozen after the first answer is no preregistration.
   ASSERT_EQ(typed("vip-stats preregister " + at("quest.toml") + " --plan " + at("plan.toml") + " --out " +
                   at("bundle"))
                 .exit_code,

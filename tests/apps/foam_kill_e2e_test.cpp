@@ -98,7 +98,7 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   EXPECT_EQ(done_in(killed_), done_in(whole_));
   EXPECT_EQ(answers_in(killed_).size(), answers_in(whole_).size());
 
-  // Every frame shows the water of its level, from the step at which the protocol starts.
+  // Every frame shows water with the effects of its level, beginning at the protocol's start step.
   const Rows frames = rows_of(whole_, shown);
   EXPECT_EQ(frames.size(), 8u * 15);
   EXPECT_EQ(rows_of(killed_, shown), frames);

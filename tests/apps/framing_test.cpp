@@ -142,7 +142,8 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
   }
 }
 
-/// 520 mm seen from 600 mm, 16:9: the camera's angle by the flags of docs/session.md in earlier versions.
+/// 27.4 degrees is the vertical angle of a 16:9 picture 520 mm wide, seen from 600 mm; earlier versions of
+/// docs/session.md set it by flags. This camera cuts off parts of the scenes, and cut_off() must name them.
 TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
     const sim::Scene scene = shipped(name);

@@ -109,13 +109,14 @@ TEST_F(HeadsetHoldGl, AHeadLockedPictureMovesWithTheHead) {
   const std::size_t drawn = stimulus_.drawn.size(), slots = logged(pose).size();
   play({.hold = study::Hold::HeadLocked, .refresh_hz = {}});
   EXPECT_EQ(stimulus_.drawn.size(), 2 * drawn);
-  // Relative to the head, half the distance between the eyes to the left, however the head moves.
+  // The layer's pose is relative to the head and constant: the left eye is half the distance between the eyes
+  // to the left.
   const auto all = logged(pose);
   const std::vector<std::string> locked(all.begin() + static_cast<std::ptrdiff_t>(slots), all.end());
   ASSERT_EQ(locked.size(), slots);
   EXPECT_EQ(different(locked), 1u);
   EXPECT_THAT(locked.front(), HasSubstr("at -0.031500 0.000000 0.000000 turned 0.000000"));
-  // It is drawn from the head's place in the world.
+  // The picture itself is drawn for the head's place in the world.
   EXPECT_NE(stimulus_.drawn.back().left.position_m, stimulus_.drawn[drawn].left.position_m);
 }
 

@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Fractions of a page of the pilot from its left and its top: "yes" to consent, also "No, go on" and a score
-/// of 4 on a session's first page; a score of 4; the button to go on.
+/// Targets on the pages of the pilot, as fractions of the page from its left and its top. The first is "yes"
+/// on the consent page, and "No, go on" or a score of 4 on a session's first page; the second is a score of
+/// 4; the third is the button to go on.
 const std::string pilot_targets = "targets=0.5:0.503,0.5:0.39,0.5:0.9";
 const std::string by_ray = "point=page;hold=0.4;" + pilot_targets + ";";
 const std::string by_dwell = "look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + pilot_targets + ";";
@@ -194,11 +195,11 @@ TEST_F(HeadsetPersonE2e, TimeAwayFromAPageIsNoResponseTime) {
   }
 }
 
-/// A frame's line of the log.
+/// One "frame" line of the runtime's log.
 struct LoggedFrame {
   int number = 0;
   bool page = false, picture = false;
-  double x = 0, z = 0;  ///< of the page, m
+  double x = 0, z = 0;  ///< position of the page, m
 };
 std::vector<LoggedFrame> frames_of(const std::string& log) {
   std::vector<LoggedFrame> frames;
@@ -237,7 +238,8 @@ TEST_F(HeadsetPersonE2e, APageFadesAndNeverStandsBesideAStimulus) {
   }
   EXPECT_GT(pages, 100);
   EXPECT_EQ(pictures, 45);
-  // The same again, with images of the page that fades before the stimulus: 18 frames of .2 s.
+  // Runs the session again and writes images of the page that fades before the stimulus. It fades over .2 s,
+  // 18 frames.
   std::string dump = "dump=" + std::to_string(last_page - 24);
   for (int frame = last_page - 23; frame <= last_page; ++frame) dump += "," + std::to_string(frame);
   database_ = folder_ / "fading.db";

@@ -52,7 +52,7 @@ std::array<double, 2> middle_of(const sim::Image& image, const Eye& eye, const C
   return {right / count, up / count};
 }
 
-/// The horizon's slopes in the outermost columns.
+/// Slopes of two points of the yellow horizon: in the picture's leftmost and rightmost columns.
 struct Horizon {
   double left_up, right_up, left_right, right_right;
 };
@@ -120,7 +120,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
         const auto [x_m, y_m, z_m] = disc.middle_m;
         const auto found = middle_of(image, eye, paint);
         const double away_m = -static_cast<double>(z_m);
-        // A fifth of a pixel.
+        // 0.0007 is a fifth of a pixel, as a slope.
         EXPECT_NEAR(found[0], (static_cast<double>(x_m) - eye.x_m - moved_m) / away_m, 0.0007)
             << eye.name << i;
         EXPECT_NEAR(found[1], static_cast<double>(y_m) / away_m, 0.0007) << eye.name << i;

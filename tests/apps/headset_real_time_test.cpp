@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Each step has its own colour.
+/// A stimulus whose start and steps take real time. Each step has its own colour.
 class SlowStimulus final : public study::Stimulus {
  public:
   SlowStimulus(std::chrono::milliseconds start, std::chrono::milliseconds step)
@@ -44,7 +44,7 @@ class HeadsetRealTimeGl : public test::HeadsetRuns {
  protected:
   ~HeadsetRealTimeGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
-  /// 20 Hz, so that a busy machine does not disturb the test.
+  /// Opens the display at 20 Hz, so slowly that a busy machine does not miss slots.
   study::HeadsetDisplay& start(const std::string& profile) {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
     display_.emplace(study::SlotDrive::Thread);

@@ -56,7 +56,7 @@ class HeadsetRuns : public ::testing::Test {
     arguments.insert(arguments.begin(), "headset");
     return study(profile, arguments);
   }
-  /// The same for any command of vip-study.
+  /// Runs any command of vip-study on the simulated runtime; expects it to follow the specification.
   Ended study(const std::string& profile, const std::vector<std::string>& arguments) {
     std::filesystem::remove(log());
     Ended ended = run(arguments, simulated(profile));

@@ -166,14 +166,15 @@ TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   }
 }
 
-/// 72 Hz shows 10 frames/s only approximately: intervals for 90 Hz would not fit its slots, and be late.
+/// The rate falls from 90 to 72 Hz, which shows 10 frames/s only approximately. Intervals that were computed
+/// for 90 Hz would not fit the new slots, and the frames would be late.
 TEST_F(HeadsetSessionE2e, AfterAChangeOfTheRateATrialsIntervalsAreComputedAnew) {
   const auto ended = session("at=400:rate/72", pilot("[10]", "[0]"), "2");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 cut short; timing: 0 pass, 1 degraded"));
   const std::string in_time = "    10      0       1   10.000   0.000    0.514   0.514       0    0.000";
   EXPECT_THAT(ended.out, HasSubstr(in_time));
-  // The same for a change in the black before the stimulus.
+  // Here the rate changes in the black before the stimulus.
   database_ = folder_ / "black.db";
   const auto black = session("at=150:rate/72", pilot("[10]", "[0]"), "2");
   EXPECT_THAT(black.out, HasSubstr(in_time));
@@ -192,7 +193,8 @@ TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewAndItsTrialShownAgain) {
         << trouble << ": " << notes();
     EXPECT_EQ(count("event WHERE kind = 'headset'"), 2) << trouble;
     EXPECT_EQ(count("frame JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 13);
-    // Nothing of the old world shows in the new one: three seconds of black before the repeat.
+    // No picture for the lost session appears in the new one: three seconds of black precede the repeated
+    // trial.
     EXPECT_GT(black_frames_after(calls(), "xrBeginSession"), 260) << trouble;
   }
 }
@@ -212,7 +214,8 @@ TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) 
   }
 }
 
-/// Tests in which the runtime announces the loss beforehand: they take as long again.
+/// Tests in which the runtime announces the loss beforehand. They take as long as the other tests of this
+/// file together, so they are slow tests.
 class HeadsetSessionSlow : public HeadsetSessionE2e {};
 
 TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewInRealTime) { lose_session_in_real_time("lost_now"); }
@@ -239,7 +242,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeMadeAnewIsToldAndContinued) {
 }
 
 TEST_F(HeadsetSessionE2e, AWaitThatHangsEndsTheProgramAndNothingIsLost) { hang(false); }
-/// In real time the session's own waits are added.
+/// In real time the session's own waits take time as well.
 TEST_F(HeadsetSessionSlow, AWaitThatHangsInRealTimeEndsTheProgramAndNothingIsLost) { hang(true); }
 
 /// The stimulus is on from frame 283 to frame 463; the event is scheduled at frame 350 or 150.

@@ -69,7 +69,8 @@ TEST_F(HeadsetTasksE2e, Task2RunsFromConsentToThanks) {
   EXPECT_THAT(ended.out, HasSubstr("10 of 10 trials answered"));
 }
 
-/// The hand presses everything from the top of a page to its button, so the lower of two choices remains.
+/// The scripted hand presses targets from the top of a page down to its button, so the lower of the two
+/// choices is selected last.
 TEST_F(HeadsetTasksE2e, APairIsAnsweredByARay) {
   std::string targets = "targets=0.5:0.26";
   for (int y = 30; y < 92; y += 4) targets += ",0.5:0." + std::to_string(y);

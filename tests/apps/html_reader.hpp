@@ -66,7 +66,7 @@ inline Element tag_of(const std::string& tag) {
   return element;
 }
 
-/// std::runtime_error if tags do not nest.
+/// Parses a page. Throws std::runtime_error if tags do not nest.
 inline Page read(const std::string& html) {
   Page page;
   std::vector<Element> open;

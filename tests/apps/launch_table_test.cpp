@@ -37,7 +37,7 @@ std::set<std::string> labels_of(sim::MethodKind method) {
   return out;
 }
 
-// A renamed pass would silently lose its floor.
+// The table finds a pass by its label: a renamed pass would silently lose its lower bound of bytes.
 TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
   auto launched = labels_of(sim::MethodKind::HiRes);
   EXPECT_FALSE(launched.contains("density beside fresh"));

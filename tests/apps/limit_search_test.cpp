@@ -33,7 +33,7 @@ TEST(LargestFactor, IsWithinItsResolutionOfTheLimit) {
       EXPECT_EQ(found.runs, static_cast<int>(tried.size()));
       EXPECT_THAT(tried, Each(Le(4)));
       EXPECT_THAT(tried, Each(Ge(1)));
-      // The message is that of the nearest failure.
+      // The message belongs to the failing factor nearest to the limit.
       double nearest = 4;
       for (const double one : tried) {
         if (one > limit) nearest = std::min(nearest, one);
@@ -62,7 +62,8 @@ TEST(LargestFactor, SaysThatAllPassed) {
   EXPECT_EQ(tried.size(), 1u);
 }
 
-/// A range of failures below a passing value is not found: the search assumes that smaller values pass, too.
+/// The search assumes that every factor below a passing one passes. It does not find failures from 1.5 to
+/// 1.9, because larger factors pass.
 TEST(LargestFactor, TrustsThatWhatPassesPassesBelow) {
   const auto found = measure::largest_factor(
       [](double factor) { return factor > 1.5 && factor < 1.9 ? "a hole"

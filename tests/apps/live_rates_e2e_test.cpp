@@ -34,7 +34,7 @@ class LiveRatesE2e : public ::testing::Test {
                                                                        {"method", "[\"LoRes\"]"},
                                                                        {"n_star", "[\"64\"]"}}));
   }
-  /// No machine makes a thousand such frames a second.
+  /// Asks for a thousand frames of this fluid a second, which no machine makes.
   void write_too_fast() { write_protocol("1000", "0.5"); }
   /// Trials are cut as soon as their time is over, so that even a machine that makes most frames cuts them.
   void cut_at_once() { replace_in(protocol_, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "); }
@@ -54,7 +54,7 @@ class LiveRatesE2e : public ::testing::Test {
   std::string database_ = folder_ / "study.db", size_ = "640x360", clock_ = "real";
 };
 
-// A plate that closes the tank above its water.
+// The obstacle is a plate that closes the tank above its water and moves down into it.
 TEST_F(LiveRatesE2e, ASceneWhoseObstacleLeavesTheWaterNoRoomIsRefusedBeforeAnythingIsWritten) {
   base::write_file_atomically(
       scene_, replaced(replaced(small_dam, "format = 1", "format = 2"), "max_m = [1.0,", "max_m = [2.0,") +

@@ -146,7 +146,8 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
   }
 }
 
-// Errors in the input are found during the work, those of an output's place before it.
+// Whether the output can be written is checked before the work, while errors in the input are found during
+// the work.
 TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
   base::write_file_atomically(folder_ / "empty", "");
   const std::string input = folder_ / "empty", below = folder_ / "file/out";
@@ -159,7 +160,8 @@ TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
           std::string("data/scenes/single_dam.toml")}) {
       if (const auto at = line.find(read); at != std::string::npos) line.replace(at, read.size(), input);
     }
-    // table1 and table2 read no input file; bake reads its scene first.
+    // Left out: table1 and table2, which read no input file, and bake, which reads its scene before it checks
+    // the output.
     if (line.find(input) == std::string::npos || line.find("bake") != std::string::npos) continue;
     ++checked;
     const Ended ended = program(line + below);

@@ -45,7 +45,7 @@ class OutsideTextsE2e : public ::testing::Test {
   std::string database_ = folder_ / "study.db";
 };
 
-// Tests all texts of a database that the schema does not restrict.
+// Puts control characters into all texts of a database that the schema does not restrict.
 TEST_F(OutsideTextsE2e, OfADatabaseReachNoTerminal) {
   for (const char* column :
        {"protocol.name",   "protocol.version",  "question.wording", "question.code",
@@ -116,10 +116,11 @@ TEST_F(OutsideTextsE2e, OfADatabaseNameNoFileOutsideOfAnExport) {
   EXPECT_EQ(names(), before);
 }
 
-/// A locale with German numbers, made for one test; empty if the system cannot make it.
+/// Makes a locale with German numbers for one test; returns its parent folder, empty if the system cannot
+/// make the locale.
 std::string german_locales(const fs::path& folder) {
   const std::string made = folder / "de_DE.UTF-8";
-  // It ends with 1 after mere warnings.
+  // The exit status does not tell success: localedef returns 1 after mere warnings.
   std::ignore = std::system(("localedef -i de_DE -f UTF-8 " + made + " >/dev/null 2>&1").c_str());
   return fs::exists(fs::path(made) / "LC_NUMERIC") ? folder.string() : "";
 }

@@ -32,8 +32,8 @@ double granularity_of(const std::function<double(int, int)>& luminance) {
 }
 
 TEST(PictureMeasure, GranularityIsTheWavelengthOfAWave) {
-  // A wave along x has a slope along one axis only; the difference to the next pixel equals the tangent to 2
-  // %.
+  // The picture is a wave along x, so it has a slope along one axis only. Its difference from one pixel to
+  // the next is within 2 % of the derivative.
   for (const double length_px : {8.0, 12.0, 16.0})
     EXPECT_NEAR(granularity_of([&](int x, int) { return 0.3 + 0.1 * wave(x, length_px); }), length_px,
                 0.05 * length_px);

@@ -84,7 +84,7 @@ TEST(PowerEffects, TwoMethodsGiveTwoAnswersAndMorePower) {
   EXPECT_GT(two.value, one.value + 4 * (one.se + two.se));
 }
 
-/// All tests must hold: Holm covers all pairs of levels, including those without "none".
+/// The claim needs both tests. Holm corrects over all pairs of levels, also over the pair without "none".
 TEST(PowerEffects, EveryLevelIsHeldAgainstNone) {
   auto request = foam_power("[\"LoRes\"]", "[\"foam\", \"none\", \"scene\"]", 0.8, 300);
   request.plan.plan.decision = stats::DecisionRule::Holm;

@@ -100,7 +100,7 @@ TEST(Power, EquivalenceWithinHalfAPointWith26People) {
   EXPECT_NEAR(*h2.tests[0].curve[0].closed_form, 0.22, 0.005);
 }
 
-// Two-sided like the other hypotheses: each of the two one-sided tests uses half of alpha.
+// Equivalence is tested as strictly as a two-sided test: each of its two one-sided tests uses half of alpha.
 TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
   const auto worlds = study::simulate_task_power(task1({"null"}, 800));
   expect_closed_forms(worlds);
@@ -109,8 +109,8 @@ TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
   EXPECT_NEAR(*test.curve[0].closed_form, *expected, 1e-12);
 }
 
-// A claim that needs all of its tests gains power without correction, but single tests are counted after
-// Holm.
+// Under the rule "intersection-union" a claim that needs all of its tests is not corrected and gains power,
+// but the number of single significant tests is counted after Holm.
 TEST(Power, SupportIsJudgedByThePlansRule) {
   auto request = task2({"effect"}, 400);
   request.effect = 0.75;
@@ -145,7 +145,8 @@ TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
   EXPECT_GT(differ, 0);
 }
 
-// Like in a study's data: the position in the plan, and a period for each scene at one n_*.
+// Simulated trials have, as in a study's data, their position in the plan, and a new period whenever the
+// scene or n_* changes.
 TEST(Power, TrialsHaveThePeriodsOfThePlan) {
   const auto request = task1({"effect"}, 1);
   const study::ShownFactors factors(request.protocol.design);

@@ -375,7 +375,7 @@ TEST(Preregistration, PartsThatAreNotWhatTheyShouldBeAreRefusedInWords) {
       "{\"schema\": \"vip-preregistration/1\", \"protocols\": [7], \"frozen_utc\": \"\", \"vip_lab\": \"\"}"};
   for (const char* name : {"about.json", "hypotheses.json"}) {
     for (const auto& text : hostile) {
-      if (text == "[]" && std::string(name) == "hypotheses.json") continue;  // the pilot's bundle has none
+      if (text == "[]" && std::string(name) == "hypotheses.json") continue;  // a pilot has no hypotheses
       const auto before = base::read_file(folder / ("bundle/" + std::string(name)), 1 << 20);
       base::write_file_atomically(folder / ("bundle/" + std::string(name)), text);
       EXPECT_THAT(

@@ -110,7 +110,7 @@ TEST(ReportChoice, TwoVersionsOfATaskStandApart) {
   ASSERT_EQ(json.at("apart").size(), 1u);
   EXPECT_EQ(json.at("apart")[0].at("flow").at("task1").at("analysed"), 3);
   EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), study::Json{"apart 1"});
-  // Analysed alone, each gives the same results as beside the other.
+  // The version of twelve people has the same results if it is analysed without the other one.
   const study::Json alone = results_of({{made_study::task1(12)}, 2});
   EXPECT_EQ(json.at("task1"), alone.at("task1"));
   EXPECT_EQ(json.at("hypotheses"), alone.at("hypotheses"));
@@ -203,7 +203,8 @@ TEST(ReportChoice, RealismAloneIsAnalysed) {
                   "a scale"}}}));
 }
 
-// "drawn and listed": every value, not only their number.
+// The page says that values beyond the whiskers are drawn and listed: it must print each value, not only
+// their number.
 TEST(ReportChoice, ValuesBeyondTheWhiskersAreListed) {
   auto task = made_study::task1(12);
   for (auto& trial : task.sessions[0].trials)
@@ -304,8 +305,8 @@ TEST(ReportChoice, PairsOverScenesAreDescribedByScene) {
               HasSubstr("Clopper-Pearson over people"));
 }
 
-// Here the test over people applies: it is named, its interval is printed and drawn, and the binomial test is
-// not mentioned.
+// People judged the pair several times, so the test over people applies: the page names it, prints and draws
+// its interval, and does not mention the binomial test.
 TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
   const study::Json json = results_of({{pairs_over_scenes(false)}, 0});
   expect_true_page(json);

@@ -12,13 +12,13 @@ namespace report_facts {
 using Json = base::Json;
 using Change = std::function<void(Json&)>;
 
-/// A sentence rests on a fact if it is on the page while the fact holds and not after its end. A clause
-/// before a semicolon counts as a sentence.
+/// A fact and the changes of the results that begin and end it. A sentence rests on the fact if it is on the
+/// page while the fact holds and not after its end. A clause before a semicolon counts as a sentence.
 struct Fact {
-  int sentences;     ///< that rest on it, those that differ in their values alone counted once
-  std::string word;  ///< in one of them: tells it from what stands in its place after the end
+  int sentences;     ///< number that rest on it; those that differ only in values count once
+  std::string word;  ///< occurs in one of them, and not in the text that replaces it
   Change ends;
-  Change begins = [](Json&) {};  ///< in a study with a pilot and both tasks
+  Change begins = [](Json&) {};  ///< applied to a study with a pilot and both tasks
 };
 
 inline Change set(const std::string& pointer, Json value) {
@@ -37,7 +37,7 @@ inline Change each(const std::string& list, const std::string& key, Json value) 
   };
 }
 
-/// Puts `other` in the part's place, and a second time gives it back.
+/// Replaces the part by `other`; applied a second time, it restores the part.
 inline Change exchange(const std::string& part, const Json& other) {
   return [=](Json& json) {
     const Json now = json[part];

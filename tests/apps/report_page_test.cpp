@@ -77,7 +77,8 @@ TEST(ReportPage, EveryMarkedNumberStandsInTheJson) {
   }
 }
 
-// "unless another share stands beside them": intervals of equivalence and of H2 and H3 hold 90 %.
+// The page says that intervals hold the plan's confidence "unless another share stands beside them".
+// Intervals of equivalence, of H2 and of H3 hold 90 %, and must print this.
 TEST(ReportPage, IntervalsOfAnotherShareSaySo) {
   std::set<std::string> said;
   for (const auto& text : page_of(example()).texts) said.insert(text.attribute("data-field"));

@@ -27,7 +27,7 @@ class SalvageCommandE2e : public ::testing::Test {
     EXPECT_FALSE(given_.empty());
   }
 
-  /// A line of the report: all answers, or none.
+  /// The line of the program's report for a source from which all answers were recovered.
   std::string all_from(const std::string& where) const {
     return "  " + std::to_string(given_.size()) + " answers from " + where + "\n";
   }

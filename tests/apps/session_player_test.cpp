@@ -86,7 +86,7 @@ TEST_F(Played, ARefusedConsentIsFour) {
 
 TEST_F(Played, OfSeveralSessionsAStopIsTold) {
   setup_.request = [this](const auto&) {
-    if (!person_->seen.empty() && person_->seen.back() == "tell refused")  // the second one's turn
+    if (!person_->seen.empty() && person_->seen.back() == "tell refused")  // P02 consents
       person_->says["take_part"] = study::test::score(1);
     return state("P01") == "refused" ? study::Request::EndSession : study::Request::GoOn;
   };

@@ -75,7 +75,7 @@ TEST(SettingPrice, SaysWhichKnobsDifferWhereNoRowIsTheSetting) {
               HasSubstr("no table of this scene file"));
 }
 
-// Ours-TSp without a fixed beta: no row's beta is the one in use.
+// If beta follows the frame rate, no row of the sweep has the same beta.
 TEST(SettingPrice, ABetaThatFollowsTheFrameRateIsNoRowsBeta) {
   auto cells = small_sweep();
   auto accelerated = sim::usual_setting("SingleDam", sim::MethodKind::OursTsp, 512);
@@ -113,7 +113,8 @@ TEST(SettingPrice, WhatMakesNoTableSaysWhy) {
   auto tables = study::sweep_tables(changed);
   EXPECT_TRUE(tables.tables.empty());
   EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("has changed since the sweep was run")));
-  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("has changed since the sweep was run"));
+  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())),
+              HasSubstr("has changed since the sweep was run"));
   auto begun = small_sweep();
   begun.erase(begun.begin());
   tables = study::sweep_tables(begun);

@@ -34,7 +34,7 @@ struct Walk {
   std::string protocol, observer;
 };
 
-/// Its name in the test's name.
+/// The part of the test's name that tells one Walk from another.
 std::string name_of(const Walk& walk) {
   return walk.protocol + (walk.observer == "random" ? "_left_out" : "");
 }

@@ -77,7 +77,8 @@ TEST(StationClock, TheOrderOfRowsIsKeptWithTheSessionAndSurvivesAMerge) {
   }
 }
 
-/// Compares Task 1 with a bundle frozen now; one session's clock showed `told` after rows of `not_before`.
+/// Compares Task 1 with a bundle frozen now. The first answer of one session is recorded at the time `told`,
+/// although its database has earlier rows with the time `not_before`.
 base::Json compared(const std::string& told, const std::string& not_before) {
   const ::test::TemporaryFolder folder;
   study::report::BundleRequest request;
@@ -127,7 +128,7 @@ TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
 }
 
 TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
-  // Rows before the bundle; and two times that may both be right.
+  // In the first case the earlier rows are older than the bundle; in the second, both times are possible.
   const std::pair<const char*, const char*> cases[] = {{"1969-12-31T23:00:00Z", "2025-01-01T00:00:00Z"},
                                                        {"2025-01-01T00:00:00Z", "2999-01-01T00:00:00Z"}};
   for (const auto& [told, not_before] : cases) {

@@ -90,15 +90,15 @@ TEST(SweepPictures, AfterThePartingOnlyTheFilmIsTold) {
   const study::CellRun early = film({106, 106, 106, 106, 100, 100}),
                        late = film({100, 100, 106, 106, 160, 160}),
                        usual = film({106, 106, 106, 106, 106, 106});
-  // The median difference is 6 at each instant except the last two, and a third of it is 2: the twin differs
-  // by 1, then by 4.
+  // The median difference of the three runs is 6 at each instant. The pictures part where the twin differs by
+  // at least a third of it, 2: it differs by 1 at 0.2 s, and by 4 at 0.2 s + 1/30 s.
   const auto scores = study::score_pictures({&early, &late, &usual}, reference, twin);
   EXPECT_NEAR(scores.parting_s, 0.2 + 1.0 / 30, 1e-12);
   EXPECT_NEAR(error(scores, 0, study::PictureError::Picture), 100 * 6 / 255.0, 1e-9);
   EXPECT_NEAR(error(scores, 1, study::PictureError::Picture), 100 * std::sqrt((0 + 36) / 2.0) / 255, 1e-9)
       << "without the last instant";
   EXPECT_GT(error(scores, 1, study::PictureError::Film), error(scores, 1, study::PictureError::Ssim));
-  // Diverged from the first instant on.
+  // A twin that differs from the first instant on.
   const study::CellRun wild = film({190, 190, 190, 190, 190, 190});
   const auto none = study::score_pictures({&early}, reference, wild);
   EXPECT_NEAR(none.parting_s, 0.1, 1e-12);
@@ -125,7 +125,8 @@ TEST(SweepPictures, WithoutPicturesNothingIsSaidOfThem) {
 const study::SweepPlan plan{.n_star = 512, .kept = "32x32"};
 const study::SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
 
-/// A run whose front and energy differ by `off` from the truth's, with frames of `ms`.
+/// A run whose front (m) and kinetic energy (J/kg) are `off` larger than those of the reference, with frames
+/// of `ms`.
 study::CellRun water(double off, double ms, const study::CellRun& seen) {
   study::CellRun out = seen;
   out.samples.push_back({.time_s = 0.1, .front_m = 5 + off, .kinetic_j_kg = 10 + off});
@@ -138,7 +139,7 @@ study::StoredCell stored(const sim::SolverSetting& setting, int seed, const stud
   return {{setting, seed, plan.seconds, plan.size, plan.kept}, origin, run};
 }
 
-/// Errors of second order in the spacing and of first order in the step.
+/// Cells whose errors are of second order in the particle spacing and of first order in the time step.
 std::vector<study::StoredCell> sweep() {
   const auto reference = study::reference_setting("SingleDam", 512);
   const auto usual = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
@@ -216,7 +217,7 @@ TEST(SweepPictures, ASweepWithoutThemSaysSo) {
   const study::BudgetRequest request{bare, 30, study::SweepError::Flip, 10};
   EXPECT_THAT([&] { study::choose_setting(cells, origin, request, {}, {}); },
               ThrowsMessage<base::Error>(HasSubstr("the sweep kept no pictures")));
-  // Cells with pictures belong to another sweep.
+  // A plan that keeps pictures does not match cells without them.
   EXPECT_THROW(study::price_list(cells, plan, origin, 10), base::Error);
 }
 

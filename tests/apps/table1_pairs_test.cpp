@@ -151,13 +151,14 @@ TEST_F(PairedCells, ReadBackToTheSameBits) {
   EXPECT_EQ(at(120, "def", 2, 2), values[7]);
 }
 
-// Differences 1, 2 | 3 | 6, 6: the means of pairs are 1.5, 3 and 6; the last pair has no finite difference.
+// Repeats of one checkpoint and gaze point form a pair's mean. Their differences are 1, 2 | 3 | 6, 6, so the
+// means are 1.5, 3 and 6; the last pair has no finite difference.
 TEST_F(PairedCells, ChangeIsTheMeanOverPairsOfCheckpointAndGaze) {
   const auto then = written(block_of({10, 10, 20, 20, 30, 30, infinite, 40}));
   const auto now = block_of({11, 12, 23, infinite, 36, 36, 41, unknown});
   const auto table = measure::change_rows({now}, then);
   ASSERT_EQ(table.rows.size(), measure::still_metrics.size());
-  // s of 1.5, 3, 6 is 2.29129; t(0.975, 2) = 4.30265.
+  // The standard deviation of 1.5, 3, 6 is 2.29129; t(0.975, 2) = 4.30265.
   EXPECT_EQ(table.rows[2], (std::vector<std::string>{"Pond", "1k", "tuned", "LoRes", "psnr_overall", "3.500",
                                                      "-2.192", "9.192", "3"}));
   const auto itself =

@@ -28,7 +28,8 @@ TEST(Table1Gazes, AreTheScenesOwnNearestInTimeFirst) {
   using Points = std::vector<sim::Vec3d>;
   EXPECT_EQ(measure::gaze_points(dam, 120, 3),
             (Points{dam.gaze[2].point_m, dam.gaze[1].point_m, dam.gaze[3].point_m}));
-  // The key of frame 60 starts its jump there; frame 60 still looks at the previous point.
+  // The gaze starts its jump to the point of frame 60 in that frame: in frame 60 it still rests on the
+  // previous point.
   EXPECT_EQ(measure::gaze_points(dam, 60, 2), (Points{dam.gaze[0].point_m, dam.gaze[1].point_m}));
   // Faucet lists one point twice.
   const auto faucet = sim::read_scene("data/scenes/faucet.toml");
@@ -154,7 +155,7 @@ TEST(Table1Scores, LeaveEqualPicturesAndSmallMasksOutOfTheMeans) {
     return std::vector<std::string>();
   };
   using Row = std::vector<std::string>;
-  // Groups 21 and 31: t(0.975, 1) = 12.7062 times 5.
+  // The groups' means are 21 and 31. The half width is t(0.975, 1) = 12.7062 times their standard error, 5.
   EXPECT_EQ(row("LoRes"), (Row{"Pond", "1k", "LoRes", "tuned", "psnr_overall", "26.000", "-37.531", "89.531",
                                "2", "4", "0", "0", "5000"}));
   EXPECT_EQ(row("FovFluid")[5], "45.000");
@@ -200,7 +201,8 @@ TEST(Table1Scores, AnOrderBreaksBeyondItsBound) {
 }
 
 TEST(Table1Scores, PairsAreTakenCellByCell) {
-  // Means of 25 and 26, but one side lacks its second group.
+  // The means of the methods' groups are 20 and 30, and 21 and 31, but the second method lacks a value in its
+  // second group.
   const auto rows = measure::paired_rows({block_of({20, 20, 30, 30}, {21, 21, infinite, 31}, {})}).rows;
   EXPECT_EQ(rows[0][4], "FovFluid - LoRes");
   EXPECT_EQ(rows[0][5], "1.000");

@@ -101,8 +101,8 @@ TEST(TaskResults, ClaimsAreCorrectedOverAllSix) {
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(of_six[i], holm[i], 1e-15);
 }
 
-// Like pairs, which are corrected over the pairs of one score at one n_*. A method without answers still
-// belongs to the family.
+// The family of an ordinal model's effects is its methods, as the family of pairs is all pairs of one score
+// at one n_*. A method without answers still belongs to the family.
 TEST(TaskResults, OrdinalEffectsAreCorrectedOverTheMethodsOfTheirModel) {
   auto task = made_study::task1(26);
   for (auto& session : task.sessions)
@@ -297,7 +297,8 @@ stats::AnalysisPlan plan_of(const std::string& text) {
   return study::read_plan(folder / "plan.toml").plan;
 }
 
-// A bundle's plan names its protocols; a plan from before these keys existed was frozen under Holm.
+// A plan file that names its protocols is part of a bundle. If it lacks the key of the decision rule, it was
+// frozen before this key existed, under Holm.
 TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
   const auto fresh = plan_of("format = 1\n");
   EXPECT_EQ(fresh.decision, stats::DecisionRule::IntersectionUnion);

@@ -267,7 +267,8 @@ TEST(VipStatsE2e, LeavesNothingHalfWrittenAtAFileSizeLimit) {
   const TemporaryFolder folder, out;
   const auto database = folder / "study.db";
   write_database(database, simulated("ptpe:a=24,b=0.02"));
-  // SQLite's own files beside it exist already, so none of them reaches the limit.
+  // A second connection, so that the files that SQLite keeps beside the database exist already and none of
+  // them reaches the limit.
   study::sqlite::Connection other(database, study::sqlite::Open::Write);
   other.integer("SELECT count(*) FROM session");
   const auto json = (out / "fit.json").string();

@@ -255,7 +255,7 @@ TEST_F(WithdrawalBytes, OfThePersonAreNowhereAndOfAllOthersAsTheyWere) {
   const auto older = content_of(first_version);
   ASSERT_THAT(older, Contains(HasSubstr(code)));  // belongs to another person
 
-  Connection reader(path, Open::Write);  // keeps a log beside the database
+  Connection reader(path, Open::Write);  // keeps a write-ahead log beside the database
   reader.integer("SELECT count(*) FROM session");
   const Ended done = call({vip_study, "withdraw", leaver, "--db", path, "--yes"});
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;

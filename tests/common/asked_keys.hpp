@@ -1,5 +1,5 @@
 #pragma once
-/// A reference of keys against the keys that a reader asks for.
+/// Compares the documented keys of a file format with the keys for which its reader asks.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace test {
 
-/// How each key was asked for, by its dotted name.
+/// How the reader asked for each key (type, range, choices, default), by the key's dotted name.
 using AskedKeys = std::map<std::string, std::vector<base::AskedKey>>;
 
 inline std::string name_of(const base::KeyReference& key) {

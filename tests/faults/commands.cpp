@@ -31,7 +31,7 @@ void allow(const fs::path& database, const Person& person, bool allowed) {
   check_cleaned(database, done.left);
 }
 
-/// Works also if the command got so far that the withdrawal is already done.
+/// Withdraws a person, even if the interrupted command already recorded the withdrawal.
 void withdraw(const fs::path& database, const Person& person, bool export_was_cut = false) {
   check_cleaned(database, study::withdraw(database, person.code).beside.left, export_was_cut);
 }
@@ -45,7 +45,7 @@ void export_all(const fs::path& database) {
 
 void prepare_north(const fs::path& folder) { play(at(folder, "north"), north); }
 
-/// If the plan was stored although an error came, resumes as the error says.
+/// Plays a new plan. If an error reports that the plan is already stored, resumes it as the error says.
 void play_or_resume(const fs::path& database) {
   try {
     play(database, north);
@@ -55,7 +55,7 @@ void play_or_resume(const fs::path& database) {
   }
 }
 
-/// With exports, and a backup like that of an upgrade.
+/// Makes exports of the station "north", and a backup such as an upgrade leaves.
 void prepare_withdrawal(const fs::path& folder) {
   prepare_north(folder);
   const fs::path database = at(folder, "north");
@@ -64,7 +64,7 @@ void prepare_withdrawal(const fs::path& folder) {
   study::sqlite::Statement(file, "VACUUM INTO ?").bind_all(database.string() + ".v5-then.bak").run();
 }
 
-/// "all" has the north's data from before Ben withdrew and Anna refused gaze there.
+/// The database "all" was merged from "north" before Ben withdrew and Anna refused gaze at "north".
 void prepare_merge(const fs::path& folder) {
   prepare_north(folder);
   play(at(folder, "south"), south);

@@ -26,7 +26,8 @@ struct Flow {
   std::vector<std::string> healthy;
   /// Database whose sessions the command plays and whose answers it acknowledges; empty: none.
   std::string played;
-  /// If not all calls are tried: one in so many kinds of faults is, and others are in the next flow.
+  /// If only every n-th call is tried, a flow gets one in `share` kinds of faults, and adjacent flows get
+  /// different kinds.
   int share = 1;
 };
 

@@ -21,10 +21,10 @@ struct Step {
   unsigned station = 0, who = 0, choice = 0;
   bool yes = false, other = false;
   Fault fault = Fault::None;
-  long at = 0;              ///< number of the call
-  unsigned seed = 0;        ///< for what a power cut keeps
-  std::int64_t wait_s = 0;  ///< since the previous step
-  std::int64_t jump_s = 0;  ///< of the station's clock
+  long at = 0;              ///< number of the call that the fault hits
+  unsigned seed = 0;        ///< chooses which unsynced calls a power cut keeps
+  std::int64_t wait_s = 0;  ///< time since the previous step
+  std::int64_t jump_s = 0;  ///< jump of the station's clock
 };
 
 std::vector<Step> make_history(unsigned seed, long number);

@@ -102,8 +102,8 @@ void side_by_side(int jobs, Table& table, Work work) {
   for (auto& thread : threads) thread.join();
 }
 
-/// Each kind of fault at every n-th call, at one at least. Different kinds fall on different calls.
-/// `number`: of the flow.
+/// Faults of each kind at every n-th call, at least one of each kind. Different kinds begin at different
+/// calls. `number` is the flow's index, which decides the kinds if Flow::share is not 1.
 std::vector<Fault> faults_of_each(const Flow& flow, std::size_t number, const Bench& bench, long every) {
   constexpr Kind kinds[] = {Kind::Kill, Kind::Tear,   Kind::Error, Kind::ErrorsOn,
                             Kind::Full, Kind::FullOn, Kind::Read,  Kind::ReadsOn};
@@ -203,8 +203,7 @@ void add_library_commands(CLI::App& app, std::function<long()>& run) {
   auto crashes = std::make_shared<CrashOptions>();
   CLI::App& cuts = *app.add_subcommand("crashes", "What a power cut may leave of each command, call by call");
   cuts.add_option("--command", crashes->commands, "This command only; may be repeated");
-  cuts.add_option("--every", crashes->every, "Cut after every n-th call only")
-      ->check(CLI::PositiveNumber);
+  cuts.add_option("--every", crashes->every, "Cut after every n-th call only")->check(CLI::PositiveNumber);
   cuts.add_option("--states", crashes->seeds, "States by chance after each call, under each model");
   cuts.add_option("--kills", crashes->kills, "So many kills at random calls instead, each under both models");
   cuts.add_option("--seed", crashes->seed, "Of the random numbers");

@@ -30,7 +30,8 @@ Lines lines_of(const std::string& out, const std::string& word) {
   return all;
 }
 
-/// The command with the environment for its faults. `folder`: counts calls on its files.
+/// The command with the environment that injects the fault. Only calls on files in `folder` count; `count`
+/// gets their number if there is no fault.
 Arguments with_faults(const Arguments& command, const fs::path& folder, const Fault& fault,
                       const fs::path& count) {
   Arguments all{"/usr/bin/env", "OMP_WAIT_POLICY=passive", "OMP_NUM_THREADS=1",

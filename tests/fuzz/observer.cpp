@@ -1,5 +1,5 @@
-/// Any bytes as the specification of a simulated observer: refused with base::Error, or read as an observer
-/// whose own specification makes the same one.
+/// Any bytes as the specification of a simulated observer: refused with base::Error, or read. An observer
+/// that was read prints a specification, which must be read as an observer with the same specification.
 #include "libstudy/observer/observer.hpp"
 
 #include <cstdint>

@@ -56,7 +56,7 @@ struct Session {
   Frame waiting, drawing;
   std::set<std::uint64_t> attached, synced;  ///< action sets
   std::map<std::string, Input> inputs;
-  bool told_profiles = false;   ///< interaction profiles are current
+  bool told_profiles = false;   ///< the event for them was sent
   std::deque<Located> located;  ///< newest last
 };
 
@@ -101,7 +101,7 @@ struct Page {
   XrTime since;
 };
 
-/// LOCAL turns to the left at a time.
+/// From a time on, the reference space LOCAL is turned to the left by an angle.
 struct LocalTurn {
   XrTime from;
   double degrees;

@@ -102,7 +102,8 @@ void methods_without_tau_have_none(Backend backend) {
 TEST(Account, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cpu); }
 TEST(AccountGpu, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cuda); }
 
-/// A frame is solved before its own time is known: its account has the tau known at that time.
+/// A frame is solved before its own duration is known. Its account must give the tau that it was solved with,
+/// which comes from earlier frames.
 TEST(Account, TauIsWhatTheFrameWentByNotWhatCameAfterIt) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   const auto fluid = sim::make_simulation(scene, options_of(Backend::Cpu, MethodKind::OursTsp));

@@ -146,7 +146,8 @@ Price price_of(sim::Simulation& fluid) {
   return out;
 }
 
-/// A coefficient for which the unit asks for more substeps than the scene, if it can ask.
+/// A coefficient so large that the effect needs more substeps than the scene, if the effect's unit limits the
+/// substep at all.
 double brisk(EffectKind kind) {
   switch (sim::traits_of(kind).unit) {
     case sim::EffectUnit::NewtonPerMetre:
@@ -261,7 +262,7 @@ TEST(OwnLevels, StatesOfIdleEffectsResume) {
   EXPECT_EQ(bits(resumed->read_state()), bits(through->read_state()));
 }
 
-// What a method's options leave it nothing to do.
+// The next tests: stages that have nothing to do under a method's options are left out.
 
 TEST(IdleStages, OneLevelMakesAMethodHiResToTheLastBit) {
   sim::SimulationOptions one;

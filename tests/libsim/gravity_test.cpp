@@ -19,11 +19,11 @@ using sim::Wall;
 constexpr double d = 0.15;
 constexpr double g = 9.81;
 
-/// A turn by quarters.
+/// A rotation by quarter turns, maybe with a mirror image.
 struct Turn {
   const char* name;
-  std::array<std::size_t, 3> from;  ///< the upright axis that this axis shows
-  std::array<bool, 3> mirrored;     ///< and whether it runs the other way
+  std::array<std::size_t, 3> from;  ///< axis of the upright scene that becomes this axis
+  std::array<bool, 3> mirrored;     ///< whether its direction is reversed
 };
 constexpr Turn upright{"upright", {0, 1, 2}, {false, false, false}};
 constexpr Turn on_its_right{"gravity along +x", {1, 0, 2}, {true, false, false}};
@@ -90,7 +90,7 @@ Water water_of(const sim::Simulation& fluid, const Turn& turn, const Vec3d& upri
   return out;
 }
 
-/// A pool of 8 layers; the speed's bound is that of S1.
+/// A settled pool of 8 layers. Its rms speed must stay below case S1's bound, 0.02 sqrt(g H).
 void pool_rests_as_upright(Backend backend) {
   auto scene = fluid_test::tank({8 * d, 16 * d, 8 * d}, {8 * d, 8 * d, 8 * d}, 30);
   sim::SimulationOptions options;
@@ -119,8 +119,8 @@ void pool_rests_as_upright(Backend backend) {
 TEST(Gravity, ATurnedPoolRestsAsUpright) { pool_rests_as_upright(Backend::Cpu); }
 TEST(GravityGpu, ATurnedPoolRestsAsUpright) { pool_rests_as_upright(Backend::Cuda); }
 
-/// The gate holds the block on all sides but the one against gravity. The front runs 2 m in a third of a
-/// second.
+/// While the water settles, the gate holds the block on all sides except that from which gravity comes. After
+/// it opens, the front runs 2 m in a third of a second.
 void dam_breaks_as_upright(Backend backend) {
   auto scene = fluid_test::tank({16 * d, 12 * d, 8 * d}, {8 * d, 8 * d, 8 * d}, 20);
   scene.gate = true;
@@ -170,7 +170,7 @@ double floating_depth(const Turn& turn, Backend backend) {
     if (frame >= frames - last) height += at[1] / last;
   }
   EXPECT_FALSE(fluid->divergence());
-  // The water and half of the ball stand as high as the water without it: 1 m, less what began in the ball.
+  // The top of the water lies at twice the height of its centre.
   const double water = 2 * water_of(*fluid, turn, scene.tank_size_m).centre[1];
   return (water - height) / radius;
 }
@@ -185,7 +185,8 @@ void ball_floats(Backend backend) {
 TEST(Gravity, ABallFloatsAgainstIt) { ball_floats(Backend::Cpu); }
 TEST(GravityGpu, ABallFloatsAgainstIt) { ball_floats(Backend::Cuda); }
 
-/// Any direction: the forces give m g t, and at rest the walls, the lid among them, give it back.
+/// Gravity along no axis: the forces change the momentum by m g t, and once the water rests, the walls,
+/// including the lid, take up the same amount.
 void account_closes(Backend backend) {
   auto scene = fluid_test::tank({8 * d, 12 * d, 8 * d}, {8 * d, 8 * d, 8 * d}, 60);
   scene.lid = true;
@@ -252,7 +253,7 @@ void methods_follow(Backend backend) {
 TEST(Gravity, AllMethodsFollowIt) { methods_follow(Backend::Cpu); }
 TEST(GravityGpu, AllMethodsFollowIt) { methods_follow(Backend::Cuda); }
 
-/// Mouth under water, in tanks that are nine tenths full and full.
+/// A nozzle's mouth is under water, in tanks that are nine tenths full and full.
 void nozzle_leaves_a_closed_tank_whole(Backend backend) {
   for (const auto& [layers, speed] : {std::pair{9.0, 2.0}, std::pair{10.0, 2.0}, std::pair{10.0, 6.0}}) {
     SCOPED_TRACE(testing::Message() << layers << " layers, " << speed << " m/s");

@@ -79,7 +79,8 @@ TEST(Heat, WaterThatWouldLoseHalfOfItsWeightIsRefused) {
   EXPECT_THAT(error("", warm_table("560.0")), refused);
   EXPECT_THAT(error("temperature_k = 560.0\n", ""), refused);
   EXPECT_THAT(error("", "wall_k = 560.0\n"), refused);
-  // Where all water, from the start and from nozzles, is as warm, nothing has the reference temperature.
+  // The reference temperature counts only if some water has it: not if all water, from the start and from
+  // nozzles, is at 560 K.
   const std::string all =
       "[[warm]]\nmin_m = [0.0, 0.0, 0.0]\nmax_m = [21.0, 3.0, 21.0]\ntemperature_k = 560.0\n";
   EXPECT_THAT(error("", all), refused);
@@ -176,7 +177,8 @@ void ledgers(Backend backend) {
   for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) the_ledger_closes(backend, method);
 }
 
-/// 507 K above the reference, where expansion times kelvin is above 1.
+/// Water of 800 K is 507 K above the reference of 293.15 K, so that expansion times temperature difference is
+/// above 1. It must rest as high as cold water.
 void uniform_warmth_changes_nothing(Backend backend) {
   NEEDS_EFFECTS;
   for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) {

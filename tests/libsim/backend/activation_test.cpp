@@ -144,7 +144,8 @@ SIM_TEST(Activation, UnknownPlacesAreSolved) {
   for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
-/// Solved particles change their velocity by `gain`; resting ones must end with the same velocity.
+/// The test changes the velocity of solved particles by `gain`. The stage must give resting particles the
+/// same change, so that all end with the same velocity.
 void inherits(bool change) {
   auto all = drops(20000, 9);
   for (auto& drop : all) drop.v = {1, 2, 3};
@@ -163,8 +164,8 @@ void inherits(bool change) {
   velocity_grid_stage().run(state);
   const auto after = p.all().velocity.to_host();
   const auto position = p.all().position.to_host();
-  // A frame of 3 substeps of 1/180 s, with equal changes in each: 2/3 of the change counts for the
-  // displacement.
+  // The frame has 3 substeps of 1/180 s with an equal change of the velocity in each. The mean velocity over
+  // the substeps includes 2/3 of the whole change, which gives the displacement.
   const float way = 2.0f / 3 / 60;
   int resting = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {

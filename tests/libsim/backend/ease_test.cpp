@@ -80,7 +80,8 @@ void equals_brute_force(bool resting) {
 SIM_TEST(Ease, FollowsTheYoungestWithinTheSupport) { equals_brute_force(false); }
 SIM_TEST(Ease, LeavesOutWhoIsNotSolved) { equals_brute_force(true); }
 
-/// Two per cent of compression is an overlap to part slowly; ten per cent is an impact.
+/// A density 2 % above rest comes from overlapping particles, which the easing separates slowly. At 10 %
+/// above rest particles are in an impact, and the constraint applies in full.
 SIM_TEST(Ease, WhatIsPressedHasTheWholeConstraint) {
   const float ease[] = {0.1f, 0.1f, 0.1f, 0.1f, 0.7f, 1};
   const float density[] = {0.9f, 1.02f, 1.06f, 1.3f, 1.06f, 1.01f};

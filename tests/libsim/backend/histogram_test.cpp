@@ -22,7 +22,8 @@ struct Found {
   int bin, before, count;
 };
 
-/// The bin of a rank, counted from run `from` of bins on.
+/// Finds the bin of a rank. Ranks are counted from the first bin of run `from`; a run is a group of
+/// consecutive bins.
 struct FindRank {
   int from, rank;
   Found* out;
