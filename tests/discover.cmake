@@ -1,8 +1,8 @@
-# cmake -P, after a test program is linked: writes its ctest entries to ENTRIES. A suite of the label `unit` is one entry, since its
-# tests share what they prepare, or take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names
-# the test that failed. So is one of `sharing`. Every other test is an entry: it runs side by side with others of its suite.
-# A test in real time counts as two, so that fewer others run beside it. Tests that slow_tests.txt lists get the label slow and an
-# entry of their own.
+# cmake -P, after a test program is linked: writes the program's ctest entries to the file ENTRIES. A suite with the label `unit`
+# is one entry, because its tests share what they prepare, or take less time than starting the program and ctest's bookkeeping for
+# each test; GoogleTest's output names the test that failed. A suite in `sharing` is one entry too. Each test of the other suites
+# is an entry of its own, so that tests of one suite run side by side. A test in real time counts as two processors, so that fewer
+# tests run beside it. Tests that slow_tests.txt lists get the label slow and an entry of their own.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
@@ -22,7 +22,7 @@ set(met "")
 set(entries "")
 set(suites "")
 function(add_entry name filter label timeout)
-  # A suite is skipped when all of its tests are, not when one is; what follows in the output says that others failed.
+  # A suite is skipped only if all of its tests are: if others failed, more text follows, and the expression does not match.
   set(skipped "\\[  PASSED  \\] 0 tests\\.\n\\[  SKIPPED \\] [0-9]+ tests?, listed below:\n(\\[  SKIPPED \\] [^\n]*\n?)+$")
   set(processors 1)
   if(name MATCHES "Real(Time|Clock)")

@@ -99,7 +99,7 @@ TEST(SaliencyOfSwirlGpu, MakesAVortexFinerAndNotStillWater) {
 
 TEST(SaliencyOfSwirl, CostsNothingWhereItIsNotSeen) {
   NEEDS_EFFECTS;
-  // Without weight, and in methods without saliency.
+  // Nothing reads the swirl if its weight in saliency is 0, or if the method has no saliency.
   for (const auto& method : sim::all_methods()) {
     SCOPED_TRACE(method.name);
     const bool sees = method.target == sim::TargetSource::Saliency;

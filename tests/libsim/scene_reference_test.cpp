@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 const fs::path sources = fs::path(VIP_TEST_DIR) / "..";
 
-/// What every text has.
+/// The keys and tables that every scene text of this test has.
 const char* const frame_of_a_scene = R"(format = 2
 name = "Whole"
 gravity_m_s2 = 9.81
@@ -66,7 +66,7 @@ min_m = [0.0, 1.0]
 max_m = [1.0, 2.0]
 )";
 
-/// Every key that may stand together.
+/// A scene with all keys that do not exclude each other.
 const std::string whole_scene = std::string(frame_of_a_scene) + R"([[nozzle]]
 diameter_m = 0.5
 position_m = [4.0, 3.0, 2.0]

@@ -96,7 +96,7 @@ TEST(WaterBlocks, HoldTheMassOfTheirVolumes) {
         for (const WaterBlock& one : water) {
           std::size_t count = 0;
           for (const auto& at : points) {
-            // The last layer is partial, and may stand out by less than itself.
+            // A block's last layer is only partly filled, and may lie above the block by less than a layer.
             const bool inside = at[0] > one.min_m[0] && at[0] < one.max_m[0] && at[1] > one.min_m[1] &&
                                 at[1] < one.max_m[1] + d && at[2] > one.min_m[2] && at[2] < one.max_m[2];
             count += inside;

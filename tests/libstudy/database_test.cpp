@@ -102,8 +102,8 @@ TEST(Database, NameWithUriSyntaxIsAName) {
   EXPECT_TRUE(fs::exists(folder / "a?mode=memory#%41.db"));
 }
 
-/// State after a power cut in the very first transaction: some pages without the first, and a journal that
-/// says the file was empty before.
+/// Leaves the files of a power cut in the very first transaction: some pages are written, but not the first,
+/// and a rollback journal says that the file was empty before.
 void put_unmade(const fs::path& path) {
   base::write_file_atomically(path, std::string(4096, '\0') + std::string(8192, '\r'));
   std::string journal("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7\0\0\0\0\0\0\0\1\0\0\0\0\0\0\2\0\0\0\x10\0", 28);
@@ -121,7 +121,7 @@ TEST(Database, CutOffInItsFirstTransactionIsMadeAnew) {
               ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
   Store(run, Open::Create).add_run(test::run_plan(test::pilot(), {"P02"}));
   EXPECT_EQ(merge({path, run}, into).sessions, 2);
-  // Beside a complete database the same journal belongs to another file.
+  // Beside a complete database this journal belongs to another file, so the database is not taken for empty.
   fs::copy_file(path, folder / "whole.db");
   put_unmade(folder / "other.db");
   fs::rename(folder / "other.db-journal", folder / "whole.db-journal");

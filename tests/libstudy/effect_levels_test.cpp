@@ -143,7 +143,8 @@ TEST(EffectLevels, WithoutTheFactorTheDatabaseHoldsNone) {
   EXPECT_THAT(test::column(folder / "study.db", "SELECT coalesce(effects, effect_set) FROM cell"), Each("~"));
 }
 
-/// Cells of the schema before, after an upgrade and after a salvage.
+/// Cells that were stored before the schema had effects have none, neither after an upgrade nor after a
+/// salvage.
 TEST(EffectLevels, OfTheSchemaBeforeAreNone) {
   const test::TemporaryFolder folder;
   const fs::path old = folder / "old.db", upgraded = folder / "upgraded.db";

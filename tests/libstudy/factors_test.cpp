@@ -284,7 +284,7 @@ TEST(FactorData, TheCertificateHasARowForEachCellWithWhatWasAskedAndShown) {
 
 TEST(FactorData, ExportsHaveAColumnForEachFactorAndTheMomentsOfProfiles) {
   const study::test::TemporaryFolder folder;
-  // "frames" is the name of a column of its own, "select" a word of SQL.
+  // Names of factors that could break an export: "frames" is also a column, "select" is a word of SQL.
   const fs::path path = played(folder / "study.db", small_text("frames", "select"));
   export_csv(path, folder / "csv");
   const auto rows = ::test::read_csv(folder / "csv/ratings.csv");

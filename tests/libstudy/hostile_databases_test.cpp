@@ -106,7 +106,8 @@ TEST_F(HostileDatabases, AreRefusedByEachCommandAndNothingIsTouched) {
   EXPECT_GE(kinds.size(), 8u);
 }
 
-/// The remedy that the messages name. Salvage needs the journal only where a table or its columns are gone.
+/// The messages name salvage as the remedy: it recovers all answers, and needs the journal only if a table or
+/// its columns are gone.
 TEST_F(HostileDatabases, SalvageMakesASoundStudyOfThem) {
   const auto truth = test::answers_of(sound);
   for (const test::HostileFile& file : test::hostile_files()) {
@@ -130,7 +131,7 @@ TEST_F(HostileDatabases, SalvageNamesWhatItLeavesOut) {
                                                              "changes of the table 'session'"));
 }
 
-/// The other remedy that the messages name.
+/// For a foreign table the message also names the command that drops it.
 TEST_F(HostileDatabases, WhatTheMessageSaysToDropIsDropped) {
   test::spoil_with(study, "CREATE TABLE kept AS SELECT * FROM response");
   const std::string message = message_of([&] { read_status(study); });

@@ -25,7 +25,8 @@ SessionHooks stop_in_showing(int showing) {
   return hooks;
 }
 
-/// paced_pairs() has one practice trial and three that count, each with two stimuli: the third trial is cut.
+/// A session of paced_pairs(), which has one practice trial and three that count, each with two stimuli. It
+/// is cut in the fifth showing, so in the third trial.
 class InterruptionPolicy : public ::testing::Test {
  protected:
   /// Cuts the session, settles the interruption like resume, then plays to the end.

@@ -25,7 +25,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// No file can grow beyond `bytes` during its lifetime.
+/// While an object of this class lives, no file of the process can grow beyond `bytes`.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {

@@ -121,7 +121,8 @@ TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
   const test::TemporaryFolder folder;
   const CertificateRow row = certificate_of(folder / "study.db", {each_takes_250_ms});
   EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
-  // Frame i is shown 250 (i + 1) ms after the start; frames that are ready by 20 s are shown.
+  // Frame i is ready 250 i ms after the start and shown 250 ms later. Frames that are ready by 20 s, when the
+  // trial is cut, are shown.
   EXPECT_EQ(row.frames, 81);
   const auto trials = test::trials_of(folder / "study.db");
   ASSERT_EQ(trials.size(), 1u);

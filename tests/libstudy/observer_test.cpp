@@ -67,7 +67,7 @@ TEST(PtpeObserver, WithoutNoiseIsTheNearestCategory) {
 
 TEST(PtpeObserver, JudgesTheFramesShownNotTheNominalSetting) {
   PtpeObserver observer(parse_ptpe_observer("ptpe:a=30,b=0.02,noise=0,participant_sd=0"));
-  EXPECT_GT(score(observer, shown(50, 0, 1, 0)), 5);  // in a cell of 10 frames/s
+  EXPECT_GT(score(observer, shown(50, 0, 1, 0)), 5);  // the cell asks for 10 frames/s
 }
 
 TEST(PtpeObserver, IsAFunctionOfSeedPersonAndPosition) {

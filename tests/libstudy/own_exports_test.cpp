@@ -245,7 +245,8 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-// Kills an export that replaces an earlier one, at calls spread over its whole length.
+// An export that replaces an earlier one is killed at calls spread over its whole length. A withdrawal
+// afterwards must leave no file with the person's code.
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;
@@ -262,7 +263,7 @@ TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   EXPECT_GT(stops, 10);
 }
 
-// The same for the withdrawal.
+// Here the withdrawal itself is killed, and then repeated.
 TEST_F(OwnExports, AreDeletedWhereverTheWithdrawalWasStopped) {
   const StateAt state(folder / "state");
   int stops = 0;

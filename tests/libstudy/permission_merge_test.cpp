@@ -65,7 +65,7 @@ TEST_F(PermissionMerge, ARefusalInOneCopyHoldsThoughTheOtherWentOn) {
               ElementsAre("4"));
 }
 
-/// The clock of the allowing station is years ahead, and then years behind.
+/// The clock of the station that recorded the consent is years ahead, and then years behind.
 TEST_F(PermissionMerge, ARefusalWinsOverAnAnswerThatDidNotKnowOfIt) {
   change_permissions(here_, "P01", {.gaze = false, .sharing = false});
   change_permissions(there_, "P01", {.gaze = true, .sharing = true});
@@ -80,7 +80,7 @@ TEST_F(PermissionMerge, ARefusalWinsOverAnAnswerThatDidNotKnowOfIt) {
 TEST_F(PermissionMerge, AConsentRecordedAfterTheRefusalCountsAndDeletedGazeStaysAway) {
   change_permissions(here_, "P01", {.gaze = false, .sharing = false});
   change_permissions(here_, "P01", {.gaze = true, .sharing = true});
-  // The clock jumped back between the two.
+  // The clock jumped back between the refusal and the consent.
   Connection(here_, Open::Write)
       .execute("UPDATE permission_change SET utc = '1970-01-01T00:00:00Z' WHERE granted = 1");
   expect_merged(all_allowed_, {"P02"});
@@ -96,8 +96,9 @@ TEST_F(PermissionMerge, AConsentThatIsRecordedInTheMergedDatabaseCounts) {
   EXPECT_EQ(test::permissions_of(all), all_allowed_);
 }
 
-/// One session of P01 in three databases, of which the first continues it. Beside each database is the rule's
-/// result by brute force: a record counts unless a later one was made where it was known.
+/// A random history of one session of P01 in three databases, of which the first continues the session. For
+/// each database the class also computes the rule's result by brute force: a record of a permission counts
+/// unless a later one was made where it was known.
 class Histories {
  public:
   explicit Histories(unsigned seed) : random_(seed) {}

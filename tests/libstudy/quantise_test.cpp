@@ -29,7 +29,7 @@ std::vector<FpsSetting> pilot_settings() {
 
 double sd_tolerance(const FpsSetting& setting) { return std::max(0.02 * setting.sd, 0.25); }
 
-/// Longest unquantised interval rounded up to a period.
+/// The longest unquantised interval in refresh periods, rounded up.
 int hold_bound(const FpsSetting& setting, double refresh_hz) {
   const double slowest = study::exact_rates(setting, {}).front();
   return static_cast<int>(std::ceil(refresh_hz / slowest - 1e-9));
@@ -59,8 +59,9 @@ double extreme_square(int n, int total, int longest, double refresh_hz, double c
   return best[spare] / n;
 }
 
-/// True if the brute force rules out every list of holds for the setting: on a grid of c, the least variance
-/// is at least the least extreme minus (spacing / 2)^2, and the greatest is at most every greatest extreme.
+/// True if the brute force rules out every list of holds for the setting. It computes extremes on a grid of
+/// c: the least variance is at least the smallest of the least extremes minus (spacing / 2)^2, and the
+/// greatest variance is at most the smallest of the greatest extremes.
 bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const int n = static_cast<int>(setting.mean * setting.duration_s);
   const double periods = refresh_hz * setting.duration_s;

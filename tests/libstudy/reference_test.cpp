@@ -87,7 +87,8 @@ std::string with(const std::string& protocol, const study::KeyReference& key, co
   return out;
 }
 
-// The files do not use each word of each choice, and a word may have keys of its own.
+// Sets each choice to each of its words, because the files use only some of them, and a word may have keys of
+// its own. The reference must name every key for which the reader asks.
 TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
   const auto known = test::names_of(study::protocol_reference());
   int words = 0, keys = 0;

@@ -97,7 +97,7 @@ class Scripted final : public Participant {
   std::vector<Occasion> occasions;
 
  private:
-  /// " 0.5"; empty for 0 s.
+  /// " 0.5" for 0.5 s; empty for 0 s.
   static std::string in_seconds(double seconds) {
     std::ostringstream text;
     if (seconds > 0) text << ' ' << seconds;
@@ -110,7 +110,8 @@ class Scripted final : public Participant {
   }
 };
 
-/// `text` of pairs at one frame rate for all, shown by its own clock, with a rest within each trial.
+/// The protocol `text` of pairs with 20 frames/s for all stimuli, and with a rest between a trial's two
+/// questions.
 inline Protocol paced(const std::string& text) {
   return parse_protocol(replaced(with_keys(text, {{"timing", "\"equal\"\nmean_fps = [20]\nsd_fps = [0]"}}),
                                  "\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\""),
@@ -124,7 +125,7 @@ inline Protocol paced_pairs(const std::string& policy = "", const std::string& m
                               : replaced(text, judge, judge + "on_interruption = \"" + policy + "\"\n"));
 }
 
-/// The same after a consent page that asks only whether one takes part.
+/// paced() on pairs.toml, with a consent page that asks only whether one takes part.
 inline Protocol consented() { return paced(without(protocol_text("pairs"), {"gaze_kept", "data_shared"})); }
 
 /// One session of a protocol in its own database.

@@ -135,7 +135,8 @@ seconds = 4
 TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   OneSession one(paced_pairs());
   one.run();
-  // A word and a moment of black before each of the two; the protocol's black stays whole.
+  // Each stimulus is preceded by its word and half a second of black; the protocol's black between the
+  // stimuli keeps its full length.
   std::vector<std::string> trial{"first 1",   "black 0.5",      "black 1", "second 1",
                                  "black 0.5", "ask preference", "rest 9",  "ask ease"};
   std::vector<std::string> expected{"ask age games"};

@@ -101,7 +101,8 @@ TEST(Task1Plan, WilliamsRowsAreBalancedWithinEachSequence) {
   for (const auto& [what, count] : successors) EXPECT_EQ(count, 2);
 }
 
-/// (scene, method, method) -> how often the first of them by name was shown first, and how often second.
+/// (scene, method, method), the methods ordered by name -> in how many trials the first of them was shown
+/// first, and in how many second.
 using IntervalCounts = std::map<std::tuple<std::string, std::string, std::string>, std::pair<int, int>>;
 
 void count_intervals(const Protocol& protocol, const Plan& plan, IntervalCounts& counts) {

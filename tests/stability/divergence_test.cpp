@@ -24,8 +24,8 @@ std::unique_ptr<sim::Simulation> pool(Backend backend) {
   return fluid;
 }
 
-/// Deviation of particles first .. last from the twin, except particle `but`: the 99th percentile. The path
-/// of the remaining 1 % is chaotic.
+/// 99th percentiles of the deviations from an undisturbed twin, of the particles first .. last except `but`.
+/// The paths of the remaining 1 % are chaotic.
 struct Harm {
   double way_m = 0, speed_m_s = 0;
 };
@@ -177,7 +177,8 @@ void a_crowd(Backend backend) {
     twin->step_frame();
   }
   const Harm pool = harm(*fluid, *twin);
-  // The fast crowd shortens the substeps, and in short ones more counts as still: 0.054 d was measured.
+  // The fast crowd shortens the substeps. In short substeps more of the water counts as still: the pool moved
+  // by 0.054 d.
   EXPECT_LT(pool.way_m, 0.08 * d);
   // Without the limit on the displacement of limited particles, some arrived here at once: 5.4 d and 6.5 m/s.
   EXPECT_LT(pool.speed_m_s, 0.5);

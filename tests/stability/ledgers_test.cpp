@@ -63,11 +63,11 @@ void books_close(Backend backend, const Case& run, std::int64_t n_star, int fram
   } else {
     EXPECT_LT(books.unattributed, 1e-3);
   }
-  // The target is 1. Merged particles overlap and are pushed apart, and coarse water stands higher. Measured:
-  // 1.03 to 1.06; it was 1.04 if the kick filter was as strong on moving water as on resting water, but dams
-  // lost energy later. One level has
-  // 1.0020: settled water starts still, and a jet makes it jitter, which adds energy. It had 1.0000 when
-  // settled water jittered too.
+  // The largest energy over that of the start and of the poured water; the target is 1. With levels 1.03 to
+  // 1.06 were measured, because merged particles overlap and are pushed apart, and coarse water stands
+  // higher. (It was 1.04 with a kick filter as strong on moving water as on resting water, but dams later
+  // lost energy.) With one level 1.0020 was measured: settled water starts still, and a jet makes it jitter,
+  // which adds energy. (It was 1.0000 when settled water jittered too.)
   EXPECT_LT(books.energy, adaptive ? 1.08 : 1.003);
 }
 

@@ -54,12 +54,13 @@ TEST(S09Jet, StrongGravityCountsWhereWaterRests) {
         .next();
   };
   EXPECT_EQ(steps(gravity), 2);
-  // sqrt(1000 / (0.04 0.3)) / 60 = 4.8, by the way of the fastest 3.7.
+  // A substep of sqrt(0.04 h / g) needs 60^-1 sqrt(1000 / (0.04 0.3)) = 4.8 substeps a frame; the
+  // displacement of the fastest particle alone would need 3.7.
   EXPECT_EQ(steps(1000), 5);
 }
 
-/// The gates of S1 in a pool of 16 layers. Settled by the scene's two substeps a frame it stood at 0.90 of
-/// its height under 1000 m/s2, and now at 0.96, as under the earth's gravity.
+/// The bounds of S1 in a pool of 16 layers. Under 1000 m/s2 the pool settles to 0.96 of its height, as under
+/// the earth's gravity. With only the scene's two substeps a frame it settled to 0.90.
 TEST(S09Jet, APoolUnderStrongGravityKeepsItsDensityAndHeight) {
   for (const double strength : {160.0, 1000.0}) {
     auto scene = fluid_test::tank({0.8, 1.6, 0.8}, {0.8, 0.8, 0.8}, 20);

@@ -80,7 +80,7 @@ TEST(S15DomainExit, TheLedgerCloses) { ledger_closes(Backend::Cpu); }
 TEST(S15DomainExitGpu, TheLedgerCloses) { ledger_closes(Backend::Cuda); }
 
 void a_jet_leaves_without_reflection(Backend backend) {
-  // The bar of S9, but the wall is open where it strikes.
+  // A bar of water as in case S9, but the wall is open where the bar strikes it.
   auto scene = fluid_test::tank({12, 8, 8}, {1, 1, 1});
   scene.gravity_m_s2 = 0;
   scene.outlets.push_back({Wall::HighX, {3, 3}, {5, 5}});
@@ -103,7 +103,7 @@ void a_jet_leaves_without_reflection(Backend backend) {
     pushed += std::abs(momentum.walls_sum()[0]);
     if (frame == 10) after_10 = fluid->particle_count();
   }
-  // In 10 frames it moves 5 m, 1 m of that to the wall.
+  // In 10 frames the bar of 6 m moves by 5 m, of which 1 m leads to the wall, so 2 m are left.
   const double left = static_cast<double>(after_10) / (length * 64);
   std::printf("S15: slowest %.2f m/s, %.3f of the jet left after 10 frames\n", slowest, left);
   EXPECT_NEAR(left, 2.0 / 6, 0.03);

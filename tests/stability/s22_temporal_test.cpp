@@ -165,8 +165,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Bounds hold for the median over `draws` random choices of resting particles: single runs scatter by 0.005
-/// at beta 0.3.
+/// The bounds apply to the median over `draws` random choices of resting particles, because single runs
+/// scatter by 0.005 at beta 0.3.
 void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::vector<DamGate>& gates,
                    std::uint32_t draws) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
@@ -193,8 +193,8 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     EXPECT_LT(median(kinetic), gate.kinetic_high);
   }
 }
-// S22: 10 s, or 2 s in short tests. It asks for 0.02 and 1.05 at each beta; docs/results.md explains the
-// larger bounds of the lower ones.
+// Case S22 takes 10 s, or 2 s in short tests. It asks for an error of the centre below 0.02 and for at most
+// 1.05 of the kinetic energy at each beta; docs/results.md explains why lower betas have larger bounds.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.025, 0.8, 1.05}, {0.3, 0.035, 0.8, 1.08}};
 TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {
   dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);

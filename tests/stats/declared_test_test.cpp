@@ -40,7 +40,7 @@ TEST(DeclaredTest, TTestsAreThoseOfR) {
     const auto& input = c.at("input");
     if (op == "t.one" && input.value("mu", 0.0) != 0) continue;
     const auto x = oracle::numbers(input.at("x"));
-    // A constant is the second condition of a comparison with it.
+    // A test against a constant, here 0, is a paired test whose second condition is the constant.
     const auto y = op == "t.one" ? std::vector<double>(x.size(), 0.0) : oracle::numbers(input.at("y"));
     DeclaredTest test;
     test.kind = op == "t.indep" ? TestKind::StudentT : op == "t.welch" ? TestKind::WelchT : TestKind::PairedT;

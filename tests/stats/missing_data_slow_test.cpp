@@ -83,7 +83,9 @@ Study simulate(int people, Leaving leaving, double lift, std::uint64_t seed) {
   return out;
 }
 
-/// Counts of tests of the last method against each other one, and of the others among each other.
+/// Tests between methods. `alike`: pairs of equal methods, of which `false_alarms` are significant.
+/// `different`: pairs with the last method, of which `hits` are significant. `refused`: tests without a
+/// result.
 struct Count {
   int false_alarms = 0, alike = 0, hits = 0, different = 0, refused = 0;
 

@@ -28,8 +28,8 @@ Drop on_a_box(Drop drop) {
   return drop;
 }
 
-/// Mean height over root mean square of the distance from the axis, of the drop and of a cap: both do not
-/// depend on the drop's density.
+/// Mean height over the root mean square of the distance from the axis: of the drop, and of a spherical cap.
+/// Neither value depends on the drop's density.
 double steepness(const Drop& drop, const State& state) {
   const double x = mean(state, [](const auto& p) { return place(p)[0]; });
   const double z = mean(state, [](const auto& p) { return place(p)[2]; });
@@ -99,10 +99,11 @@ double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 
 }
 
 constexpr double within = 0.15;
-/// Work over sigma: angles of 120, 90, 78 and 53 degrees.
+/// Works of adhesion over sigma, for contact angles of 120, 90, 78 and 53 degrees.
 constexpr double blunt = 0.5, upright = 1, weak = 1.2, strong = 1.6;
 
-/// Works of drops that stay on the floor: on the CPU each test uses one of two, and the slow suite both.
+/// The works of drops that stay on the floor. On the CPU each quick test uses one of the two, the slow suite
+/// both.
 using Works = std::vector<double>;
 const Works both{weak, strong};
 
@@ -136,8 +137,8 @@ void a_drop_of_mixed_levels(Backend backend) {
     EXPECT_NEAR(adhesion_back(on_the_floor(half_fine(work, backend)), 3), 1, within) << work;
 }
 /// The blunt drop never rests: it reaches its angle, overshoots, and may leave the floor. In thirty runs from
-/// starts that differ by 1e-5 of the spacing, with two sets of compiler flags, 0.00 to 1.00 of its work was
-/// recovered, and 0.88 to 1.00 of the upright drop's.
+/// starts that differ by 1e-5 of the spacing, with two sets of compiler flags, 0.00 to 1.00 of the blunt
+/// drop's work was recovered, and 0.88 to 1.00 of the upright drop's.
 void drops_that_the_floor_holds_less(Backend backend) {
   NEEDS_EFFECTS;
   EXPECT_NEAR(adhesion_back(on_the_floor({.work = upright, .backend = backend})), 1, 0.2);

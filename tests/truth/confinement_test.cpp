@@ -94,7 +94,7 @@ State Pool::still() const {
   return fluid->read_state();
 }
 
-/// Speed round the tank's middle over omega(r), by least squares within two cores, s.
+/// Speed round the tank's middle over omega(r), by least squares within two cores, m.
 double spin(const Pool& pool, const State& state) {
   double along = 0, norm = 0;
   for (const auto& p : state) {

@@ -73,7 +73,7 @@ double thickness_of(const State& state) {
   return total_mass(state) / mass(ParticleState{}) * d * d * d / face;
 }
 
-/// c from the distance and the last speed of the plate: s = v / rate.
+/// c from the plate's lost speed v_0 - v and its distance s: the rate is (v_0 - v) / s.
 double drag_back(const Plate& plate) {
   const auto fluid = start_of(plate);
   for (int k = 0; k < 20; ++k) fluid->step_frame();  // lets the levels form

@@ -51,11 +51,12 @@ Vec3d force_on(const Sunk& sunk) {
   return sum;
 }
 
-/// Water that is calmed comes to rest later: in the second second it still gives 1.06.
+/// The calming of still water lets the water come to rest later: in the second second its force is still 1.06
+/// of rho g V. So the test measures after three seconds.
 void feels_its_displaced_water(Sunk sunk) {
   sunk.rest_frames = 180;
   const Vec3d force = force_on(sunk);
-  // With temporal acceleration particles push more: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
+  // With temporal acceleration the force is larger: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
   EXPECT_NEAR(force[1], 1, sunk.beta < 1 ? 0.08 : 0.05);
   EXPECT_NEAR(force[0], 0, 0.05);
   EXPECT_NEAR(force[2], 0, 0.05);

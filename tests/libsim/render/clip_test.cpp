@@ -20,7 +20,7 @@ std::vector<RenderParticle> water() {
   return particles;
 }
 
-/// From outside, over the left wall and towards the floor.
+/// A view from outside the tank, over its left wall towards its floor.
 sim::View overview(int width, int height) {
   sim::Camera camera;
   camera.eye_m = {-5, 3, 13};

@@ -100,8 +100,8 @@ TEST_F(ShadingGl, WaterIsTheSameWhereverTilesLie) {
   const auto part = draw(renderer, pool(), part_of(view, 53, 31, 211, 149));
   // Leaves out the filter's reach beyond the part's borders.
   const auto most = differences(whole, part, 53, 31, 40);
-  // Rays are rounded differently, which moves outlines: 23 pixels by at most 5 levels. If tiles cut outlines:
-  // 64 and 13.
+  // The part's rays are rounded differently, which moves outlines: 23 pixels differ, by at most 5 levels. If
+  // tiles cut outlines, 64 pixels differ, by at most 13 levels.
   EXPECT_LE(std::count_if(most.begin(), most.end(), [](int levels) { return levels > 1; }), 40);
   EXPECT_LE(*std::max_element(most.begin(), most.end()), 9);
 }

@@ -36,8 +36,9 @@ void expect_number(const json& got, const json& expected, double rtol, double sc
   EXPECT_NEAR(got.get<double>(), expected.get<double>(), oracle::bound(expected, rtol, scale)) << where;
 }
 
-/// Profile ends are exact roots, to 1e-6, except a of x_offset, where the pack still has R's spline: at this
-/// library's end the least sum of squares meets its limit to 2e-13, at R's to 1e-3.
+/// Compares the ends of profile intervals, which are exact roots, to 1e-6. For a of the case x_offset the
+/// pack still has the value of R's spline, at which the least sum of squares misses its limit by 1e-3; at
+/// this library's end it meets the limit to 2e-13.
 void expect_profile(const json& got, const json& expected, const std::string& key, const std::string& where) {
   if (expected[0].is_null() && expected[1].is_null()) return;
   ASSERT_TRUE(got.contains(key)) << where;

@@ -45,7 +45,8 @@ direct_fit <- function(rows, start = NULL) {
 }
 along <- function(fit, delta) fit[["l"]] + fit[["b"]] * delta / 10  # log mu(delta)
 
-# Without the deviations at which the curve runs outside the frame rates shown, but for the three nearest.
+# The rows without the deviations at which the curve lies outside the frame rates shown; the three nearest deviations
+# always stay.
 reached <- function(rows) {
   log_mu <- along(direct_fit(rows), deviations)
   shown <- sapply(deviations, function(delta) range(log(rows$mu[rows$delta == delta])))
@@ -55,14 +56,15 @@ reached <- function(rows) {
 }
 near_enough <- function(rows) rows[log(rows$mu) <= log(2.46) + along(direct_fit(rows), rows$delta), ]
 
-# The mean of a rating about x that is rounded and held within 1 to 7; S(4) is 4.
+# Mean of a rating that is normal about x, rounded, and held within 1 to 7. This function S has S(4) = 4.
 held_mean <- function(x, sd) 1 + Reduce(`+`, lapply(1:6, function(j) pnorm((x - j - 0.5) / sd)))
 error_sd <- function(rows) {
   settings <- Filter(function(own) mean(own) >= 2.5 && mean(own) <= 5.5, split(rows$score, paste(rows$mu, rows$delta)))
   squares <- sum(sapply(settings, function(own) sum((own - mean(own))^2)))
   sqrt(max(squares / sum(lengths(settings) - 1) - 1 / 12, 0.1))
 }
-# The surface of stats/ptpe/scale_end_fit.hpp; u is in roots of frames/s there times a factor, which only scales k.
+# The surface of stats/ptpe/scale_end_fit.hpp. Its u is the difference of roots of frames/s here, and has a factor more
+# there, which only scales k.
 scale_end_fit <- function(rows, sd, start) {
   rows$d <- rows$delta / 10
   coef(nls(score ~ held_mean(4 + (sqrt(mu) - exp((l + b * d) / 2)) * (k + m * d + q * (sqrt(mu) - exp((l + b * d) / 2))), sd),

@@ -192,7 +192,8 @@ person_choices <- function(rows, a, b) {
   list(k = as.vector(tapply(chose_a, own$person, sum)), n = as.vector(tapply(chose_a, own$person, length)))
 }
 
-# The test that turns each person's share less one half round: the distribution of the sum by convolution.
+# Exact permutation test of each person's share less one half: all signs are equally likely, and the distribution of the
+# sum is computed by convolution.
 share_test <- function(people, side) {
   steps <- (2 * people$k - people$n) * (lcm(people$n) / people$n)
   mass <- 1
@@ -232,7 +233,7 @@ circular <- function(own) {
   if (any((wins + t(wins))[upper.tri(wins)] != 1)) return(NA)
   choose(5, 3) - sum(choose(rowSums(wins), 2))
 }
-# Of all 2^10 ways to choose.
+# Probabilities of 0 to 5 circular triads over all 2^10 ways to choose in the ten pairs.
 random_triads <- local({
   pairs <- t(combn(5, 2)); out <- integer(0)
   for (code in 0:1023) {
@@ -275,7 +276,7 @@ strengths <- function(rows) {
   contrast <- t(apply(pairs, 1, function(p) { v <- numeric(5); v[p] <- c(1, -1); v[-1] }))
   difference <- as.vector(contrast %*% coef(fit)); difference_se <- error(contrast, model$covariance)
   reach <- qt(0.975, df)
-  # Against one free proportion for each pair, whichever came first.
+  # Likelihood ratio against a model with one free proportion for each pair, whichever method was shown first.
   wins <- t(apply(pairs, 1, function(p) { one <- pair_counts(rows, p[1], p[2]); c(one$k, one$n - one$k) }))
   expected <- plogis(difference) * rowSums(wins)
   part <- function(x, m) ifelse(x == 0, 0, x * log(x / m))
@@ -332,7 +333,7 @@ task2_claims <- function(rows, pairs, decision, directional) {
        decided("H6", list(one("H6", "HiRes", "Ours"), one("H6", "HiRes", "Ours-TSp")), decision))
 }
 
-# Whether a method wins or loses all of its pairs: the program's strengths are then penalised, which R's glm has not.
+# True if a method wins or loses all of its pairs: the program then penalises the strengths, which R's glm cannot do.
 separated <- function(rows) any(vapply(1:5, function(method) {
   won <- ifelse(rows$chosen == 1, rows$first, rows$second)[rows$first == method | rows$second == method] == method
   length(won) == 0 || all(won) || !any(won)
@@ -381,7 +382,7 @@ task2_results <- function(rows, decision, directional) {
   list(task2 = out, hypotheses = over_six(task2_claims(rows, pairs, decision, directional)))
 }
 
-# `of` names a study whose answers these are: only the hypotheses differ.
+# `of` names another study with the same answers. The output then has only the hypotheses, which differ.
 study <- function(name, task, rows, decision = "intersection-union", directional = FALSE, of = "") {
   results <- if (task == 1) task1_results(rows, decision, directional) else task2_results(rows, decision, directional)
   if (of != "") { results <- results["hypotheses"]; rows <- rows[0, ] }

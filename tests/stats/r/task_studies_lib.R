@@ -53,7 +53,7 @@ signed_tails <- function(d) {
   c(sum(weights[sums <= at]), sum(weights[sums >= at]))
 }
 
-# Of whole differences over one denominator.
+# Signed-rank test, estimate and interval of differences that are whole numbers over one denominator.
 signed_ranks <- function(whole, denominator) {
   used <- whole[whole != 0]
   if (length(used) == 0) return(NULL)
