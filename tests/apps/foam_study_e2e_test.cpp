@@ -198,7 +198,7 @@ TEST_F(FoamShownE2e, BakesHoldTheFoamOfTheirLevelAndArePlayed) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("sea_spray 256 LoRes none bake"),
                                 HasSubstr("sea_spray 256 LoRes foam bake"), Not(HasSubstr("live"))));
-  // A changed number makes the bakes those of other water.
+  // If the protocol changes a number of the foam, the existing bakes no longer match it.
   replace_in(protocol_, "emission_per_s = 3", "emission_per_s = 4");
   fs::remove(database_);
   const Ended other = run({"--participant", "P01", "--stimulus", bakes_});

@@ -69,7 +69,7 @@ TEST_F(HeadsetFlashE2e, WhatGoesWrongAgainAndAgainIsShownFourTimesAtMostAndFlash
   };
   for (const auto& [bad, good, cause] :
        std::vector<Trouble>{{"focus/0", "focus/1", CutCause::Focus},
-                            // Its pictures stop before its state changes.
+                            // The headset's pictures stop before the session's state changes.
                             {"shown/0", "shown/1", CutCause::NotDrawn},
                             {"render/0", "render/1", CutCause::NotDrawn},
                             {"orientation/0", "orientation/1", CutCause::Pose},

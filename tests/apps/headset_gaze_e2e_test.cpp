@@ -135,7 +135,8 @@ TEST_F(HeadsetGazeE2e, ThePointOfGazeIsOnThePictureAsItWasDrawn) {
   base::write_file_atomically(file, base::read_file(file, 1 << 20) + "\n[headset]\nhold_margin_deg = 10\n");
   const auto still = session("look_yaw=10;look_pitch=-5", "tracked", 1, file);
   ASSERT_EQ(still.exit_code, 0) << still.err;
-  // The left eye sees from -52 to 42 and from 46 to -50 degrees.
+  // The left eye's field of view is -52 to 42 degrees horizontally and -50 to 46 vertically; the margin adds
+  // 10 degrees on each side.
   const auto slope = [](double deg) { return std::tan(deg * degree); };
   const double down = slope(-5) / std::cos(10 * degree);
   const double x = (slope(-10) - slope(-62)) / (slope(52) - slope(-62));

@@ -101,7 +101,7 @@ TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("pool_light 256 LoRes none bake"),
                                 HasSubstr("pool_light 256 LoRes lit bake"), Not(HasSubstr("live"))));
-  // A changed number makes the bakes those of other light.
+  // If the protocol changes the strength of the light, the existing bakes no longer match it.
   replace_in(protocol_, "strength = 0.5", "strength = 0.25");
   fs::remove(database_);
   const Ended other = run({"--participant", "P01", "--stimulus", bakes_});

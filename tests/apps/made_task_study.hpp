@@ -71,8 +71,8 @@ inline std::vector<study::Question> questions_about_people() {
   return {age, gender};
 }
 
-/// Half female, half male, except for another answer of the first; 20 to 31 years old. The last gave no
-/// answers.
+/// Age and gender of all participants but the last, who gave no answers. Ages are 20 to 31 years. The first
+/// answered "another"; every other participant is female, the others are male.
 inline std::vector<study::PersonalEntry> about_people(int participants) {
   std::vector<study::PersonalEntry> out;
   for (int person = 0; person + 1 < participants; ++person) {

@@ -92,7 +92,8 @@ TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   std::vector<std::string> terms;
   for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
   EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
-  // Here each n_* has its own period, and each method a fixed place.
+  // Two terms are linear combinations of others: each n_* has a period of its own, and each method is always
+  // shown at the same position.
   EXPECT_EQ(mixed[0].at("left_out"), (study::Json{"position", "period 2"}));
   int less = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {

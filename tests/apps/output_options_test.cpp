@@ -142,7 +142,7 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
   }
   for (const std::string& line : folder_options()) {
     expect_refused(line, full, "/full");
-    expect_refused(line, below, file);  // a folder is made with its missing parents
+    expect_refused(line, below, file);  // missing parents are made: `file` is no folder
   }
 }
 

@@ -162,7 +162,7 @@ TEST(PilotFit, LeavesOutRepeatsAndWhatTheExperimenterExcluded) {
   EXPECT_EQ(data.exclusions[0].reason, "the phone rang");
 }
 
-// The same rules as for the tasks, for each person.
+// The rules that exclude people from the tasks apply to the pilot too, to each person separately.
 TEST(PilotFit, ObeysThePlansRulesOfExclusion) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 8, 3);
   for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;
@@ -304,7 +304,8 @@ TEST(PilotFit, ToleratesIncompleteParticipants) {
   EXPECT_TRUE(has_flag(fit, "incomplete_participants"));
 }
 
-// The plan's effect on people who reverse the scale, get tired, or press the lowest key.
+// People who reverse the scale, get tired, or press the lowest key: the fit reports them and corrects by the
+// plan's rules.
 TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
   for (auto& session : pilot.sessions)

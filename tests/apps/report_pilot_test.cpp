@@ -210,7 +210,7 @@ TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
   EXPECT_EQ(count_of(terminal_of(pilot), ", no upper bound]"), on_terminal);
 }
 
-// The same for infinite ends; JSON cannot represent infinity.
+// The same holds for infinite ends of an interval, which JSON cannot represent as numbers.
 TEST(ReportPilot, AnInfiniteEndIsAWordInTheResultsAndSaidOnThePage) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   study::Json estimate;

@@ -233,7 +233,7 @@ TEST_F(Table1PairsE2e, AStoredRunIsReadAgainBitForBit) {
   EXPECT_THAT(ended.out, HasSubstr("| now_minus_then |"));
   EXPECT_THAT(base::read_file(path("t1.md"), 1 << 16), HasSubstr("| now_minus_then |"));
 
-  // With one checkpoint fewer the error comes before anything runs.
+  // A run with fewer checkpoints than the stored run is refused before anything is computed.
   ended = table1("--checkpoints 1 --checkpoints-from " + path("kept/deep") + " --paired-with " +
                  path("then.csv"));
   EXPECT_EQ(ended.exit_code, 1) << ended.out;

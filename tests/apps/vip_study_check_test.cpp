@@ -132,7 +132,7 @@ TEST(VipStudyCheckE2e, SaysWhatAnAdaptiveProcedureChoosesFrom) {
   const auto procedure = base::Json::parse(base::read_file(json_path, 1 << 20)).at("procedure");
   EXPECT_EQ(procedure.at("tracks"), 1);
   EXPECT_EQ(procedure.at("values").size(), 12u);
-  // The standard is no candidate.
+  // The standard, level 0 ms, is not listed among the candidate levels.
   const auto staircase = vip_study("check " VIP_TEST_DIR "/fuzz/corpus/protocol/staircase.toml");
   EXPECT_THAT(staircase.out,
               testing::HasSubstr("candidate levels (latency_ms): l40 (40), l80 (80), l120 (120)\n"));

@@ -10,7 +10,7 @@
 
 namespace test {
 
-/// Runs `work` in a child until it calls kill_here(). The test fails if it does not get there.
+/// Runs `work` in a child until it calls kill_here(). The test fails if the child ends in another way.
 template <class Work>
 void killed(const Work& work) {
   const pid_t child = ::fork();

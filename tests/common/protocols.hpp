@@ -36,7 +36,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(found_in(text, from), from.size(), to);
 }
 
-/// The same in a file.
+/// Replaces the first `from` by `to` in a file.
 inline void replace_in(const std::filesystem::path& path, const std::string& from, const std::string& to) {
   base::write_file_atomically(path, replaced(base::read_file(path, 1 << 20), from, to));
 }
@@ -77,8 +77,8 @@ inline std::string short_protocol(const std::string& duration_s) {
                   "\"black 3\", ", "");
 }
 
-/// The same without spread, played although a display meets some means only nearly; the first page's five
-/// seconds become one.
+/// short_protocol() with these means, without spread and with a first page of one second instead of five. It
+/// is played although a display meets some means only approximately.
 inline std::string short_protocol_at(const std::string& means) {
   return with_keys(
       short_protocol("10"),
@@ -107,7 +107,8 @@ inline std::string asking_text(bool gaze = true, bool sharing = true) {
   return with_keys(text, {{"name", '"' + name + '"'}});
 }
 
-/// The same for a bake of 60 frames/s in a headset, which meets its rates only nearly.
+/// asking_text() for a bake of 60 frames/s in a headset. It is played although the headset meets its frame
+/// rates only approximately.
 inline std::string asking_at_60(bool gaze = true) {
   return with_keys(asking_text(gaze), {{"mean_fps", "[10, 30]"},
                                        {"content_step_s", "0.016666666666666666"},

@@ -21,7 +21,7 @@ struct Command {
   Work again;  ///< what a user types after a fault; null: act
   Work other;  ///< another command that may follow instead; null: resume in each station
   std::vector<std::string> stations;  ///< stations to check afterwards
-  /// People who have withdrawn when it is done, by station.
+  /// People who have withdrawn when the command is done, by station.
   std::map<std::string, std::vector<Person>> gone{};
   /// People who have withdrawn when `other` is done; people with tombstones always count.
   std::map<std::string, std::vector<Person>> gone_by_other{};

@@ -36,7 +36,7 @@ class Crashes {
   std::size_t calls() const { return recorded_.calls.size(); }
   /// The last call before a fault, for messages.
   std::string last_call(const CrashTry& one) const;
-  /// Makes the state. False if an earlier one was equal.
+  /// Makes the state. Returns false if an equal state was made before.
   bool make(const CrashTry& one);
   /// Continues from the state that was made last.
   Problems go_on();

@@ -34,7 +34,7 @@ struct CallPlan {
   Kind kind = Kind::None;
   bool from_then_on = false;       ///< Error, Full: all later calls fail too
   long at = 0;                     ///< number of the call, from 1
-  bool reads = false;              ///< counts reads too; Error then means them instead
+  bool reads = false;              ///< also counts reads; Error then fails reads, not changes
   std::int64_t clock_ahead_s = 0;  ///< added to the time of day
   CallLog* log = nullptr;          ///< where texts are recorded; null: nowhere
   bool record = false;             ///< also records calls and their data

@@ -22,7 +22,7 @@ struct Flow {
   std::function<Arguments(const fs::path& folder)> again;
   /// Content that must be the same at the end, with or without a fault.
   std::function<Lines(const fs::path& folder)> content;
-  /// Databases of the folder that are healthy before and must always open.
+  /// Databases of the folder that are intact before the fault. Each must open after it.
   std::vector<std::string> healthy;
   /// Database whose sessions the command plays and whose answers it acknowledges; empty: none.
   std::string played;

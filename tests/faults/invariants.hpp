@@ -30,7 +30,7 @@ struct SessionFacts {
   std::string person, participant, code, station, state;
   std::optional<bool> gaze, sharing;          ///< the last decision; none: not answered yet
   int gaze_changes = 0, sharing_changes = 0;  ///< decisions after the consent page
-  int gaze_rows = 0;                          ///< of gaze, head and gaze_validation
+  int gaze_rows = 0;                          ///< rows in the tables gaze, head and gaze_validation
   std::set<int> done;                         ///< positions of units
   std::vector<std::string> answers;           ///< "position question score words"
   std::string key() const { return code + "@" + station; }

@@ -77,7 +77,7 @@ void need_type(const T* structure, XrStructureType type) {
   need(structure && structure->type == type, XR_ERROR_VALIDATION_FAILURE,
        "a structure of another type, or none");
 }
-/// The same, but null is allowed.
+/// Refuses a structure of another type; null is allowed.
 template <class T>
 void need_type_or_null(const T* structure, XrStructureType type) {
   if (structure) need_type(structure, type);

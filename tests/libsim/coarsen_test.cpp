@@ -44,7 +44,7 @@ bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>&
 }
 
 TEST(Coarsen, TargetsOfThreeLeaveExactlyAnEighth) {
-  // Also where n / 8 is no power of two.
+  // Counts for which n / 8 is a power of two, and others.
   for (const int eighths : {0, 1, 2, 3, 5, 7, 100, 513}) {
     const auto fine = cloud(8 * eighths, 1);
     const auto coarse = sim::coarsen(fine, std::vector<std::uint8_t>(fine.size(), 3));

@@ -239,7 +239,8 @@ void runs_are_bit_equal(Backend backend) {
   EXPECT_TRUE(same(through, run_on(scene, options, middle, 50))) << "the number of threads matters";
   omp_set_num_threads(threads);
 }
-/// The same with exchanges and splits; these runs start without a history of levels.
+/// Runs of several levels, with exchanges and splits, are bit-equal too. They start without a history of
+/// levels.
 void mixed_levels_are_bit_equal(Backend backend) {
   const auto scene = faucet();
   auto fine = scene;

@@ -231,7 +231,7 @@ TEST(SceneReference, HasTheTypesRangesAndDefaultsOfTheReaders) {
   test::expect_types_ranges_and_defaults(sim::scene_reference(), asked_keys());
 }
 
-/// The text without this key wherever it stands, or without the tables of this name.
+/// The text without all lines of this key, or without all tables of this name.
 std::string without(const std::string& text, const base::KeyReference& key) {
   std::string out, table, kind;
   std::istringstream lines(text);

@@ -258,7 +258,7 @@ TEST(FactorData, TheCertificateHasARowForEachCellWithWhatWasAskedAndShown) {
   const auto rows = read_certificate(path, 1, FpsMean::Harmonic);
   ASSERT_EQ(rows.size(), 6u);
   const CertificateRow& row = rows[2];
-  const std::string content = row.levels.at(1).second;  // of the group to which the hash deals slot 0
+  const std::string content = row.levels.at(1).second;  // level of the group to which slot 0 was assigned
   EXPECT_THAT(row.levels, ElementsAre(testing::Pair("hitch", "h50"),
                                       testing::Pair("content", testing::AnyOf("dam", "drop"))));
   EXPECT_EQ(row.timing, "60 frames/s, a hitch of 50 ms every 2 s, jitter 0.5");

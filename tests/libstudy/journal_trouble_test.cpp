@@ -117,7 +117,7 @@ TEST(JournalTrouble, ALostJournalIsNoticedAtTheNextCommitAndWrittenAnew) {
     one.note("later");
     EXPECT_EQ(one.notes_kept(), 3) << how;
     test::expect_journal_equals(one.path);
-    // A file that another program put there stays.
+    // A file that another program put in the journal's place is kept under another name.
     std::vector<std::string> aside;
     for (const auto& entry : fs::directory_iterator(one.folder.path())) {
       if (entry.path().string().find(".replaced-") != std::string::npos)

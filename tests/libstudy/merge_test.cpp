@@ -208,7 +208,7 @@ TEST_F(Stations, CodesStayDistinctWhereStationsDoNotTellThemApart) {
   merge({path("north"), path("twin"), path("trap"), path("south"), path("none"), path("odd")}, path("all"));
   const Lines found = codes(path("all"));
   ASSERT_EQ(found.size(), 9u);
-  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // the person who had this code before
+  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // already had this code in "west"
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-room-3-b"), 1);
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-north"), 0);
   EXPECT_EQ(

@@ -68,7 +68,8 @@ bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const int longest = hold_bound(setting, refresh_hz);
   const double top = setting.sd + sd_tolerance(setting);
   const double floor = std::max(0.0, setting.sd - sd_tolerance(setting));
-  // mean(f) / harmonic mean - 1 = -cov(f, 1/f) <= sd(f) sd(1/f): how far the arithmetic mean can lie above.
+  // The arithmetic mean exceeds the harmonic mean by a limited share: mean(f) / harmonic mean - 1 = -cov(f,
+  // 1/f) <= sd(f) sd(1/f).
   const double reach = setting.mean * (1 + top * (longest - 1) / (2 * refresh_hz));
   const double spacing = 0.2;
   double least = std::numeric_limits<double>::infinity(), most = least;

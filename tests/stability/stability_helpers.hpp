@@ -35,7 +35,7 @@ inline std::unique_ptr<sim::Simulation> start_from(Backend backend, sim::Scene s
   return sim::make_simulation(scene, options);
 }
 
-/// The same in a cube of 2 m, three substeps a frame.
+/// start_from() in a cube of 2 m, with three substeps a frame.
 inline std::unique_ptr<sim::Simulation> start_in_a_cube(Backend backend,
                                                         const std::vector<ParticleState>& start) {
   sim::SimulationOptions options;

@@ -11,7 +11,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Two levels of the factor by two combinations of the rest: treatment = 2 rest + level.
+/// Places of four treatments: two levels of the examined factor by two combinations of the other factors.
+/// Treatment = 2 combination + level.
 const std::vector<FactorPlace> places{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
 
 PairChoice choice(int participant, int first, int second, bool first_chosen) {
@@ -23,7 +24,7 @@ TEST(LevelPreferences, CountPairsThatDifferInTheFactorAlone) {
   for (int person = 0; person < 4; ++person) {
     choices.push_back(choice(person, 0, 1, false));       // everyone chooses level 1 at rest 0
     choices.push_back(choice(person, 3, 2, person > 0));  // all but one choose level 1 at rest 1
-    choices.push_back(choice(person, 0, 3, true));        // the rest differs too: not counted
+    choices.push_back(choice(person, 0, 3, true));        // the other factors differ too: not counted
     choices.push_back(choice(person, 0, 2, true));        // same level: not counted
   }
   const auto found = level_preferences(choices, places, 2, {});

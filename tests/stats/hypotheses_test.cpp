@@ -274,7 +274,7 @@ TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
   EXPECT_EQ(*all[1].tests[0].p, 1) << "beyond the margin";
   EXPECT_EQ(*all[2].tests[0].p, 1) << "at the margin";
   for (const auto& one : all) EXPECT_EQ(one.confirmed, 0);
-  // Few people cannot show anything with a sign test: 2^-4 on each side.
+  // Five people cannot show anything with a sign test: its smallest p is 2^-4.
   for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 5))
     EXPECT_EQ(one.status, HypothesisStatus::NotSupported) << one.status_text;
 }

@@ -16,7 +16,7 @@ Drop on_the_floor(Drop drop) {
   drop.height = 0;
   return drop;
 }
-/// The same on a box, four spacings high, half a radius away from the walls.
+/// Half a ball on a box that is four spacings high and half a radius away from the tank's walls.
 Drop on_a_box(Drop drop) {
   drop = on_the_floor(drop);
   drop.height = 4 * drop.spacing();

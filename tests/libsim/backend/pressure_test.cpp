@@ -219,7 +219,7 @@ SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
   constexpr int layers = 24;
   for (const int side : {16, 18, 19, 22}) {
     auto state = column_of(side, layers, 0.1f, 0.95f);
-    state.parameters.coarse_cycles = 20;  // the colours of a sweep are not symmetric
+    state.parameters.coarse_cycles = 20;  // many, because one sweep by colours is not symmetric
     auto points = state.particles.all().predicted.to_host();
     const float middle = 0.05f * static_cast<float>(side);
     for (auto& p : points) {

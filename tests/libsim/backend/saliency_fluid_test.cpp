@@ -68,7 +68,7 @@ const State& broken_dam() {
   return state;
 }
 
-/// From 2.5 m before the glass, a little above the water's middle, gaze to the middle of the front.
+/// A viewer 2.5 m before the glass, a little above the water's middle, who looks at the middle of the front.
 struct Looking {
   Vec3d eye, target;
   double scale = 1;
@@ -167,7 +167,8 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
     before += static_cast<double>(first[i]);
     after += static_cast<double>(third[i]);
   }
-  // What remains depends on the density alone: at most two frames of decay by a fifth.
+  // In water that has stopped the feature's target comes from the density alone. The feature approaches it by
+  // a fifth per frame, so at least 0.8^2 = 0.64 remains after at most two frames.
   EXPECT_LT(after, 0.95 * before);
   EXPECT_GT(after, 0.63 * before);
 }
@@ -198,7 +199,7 @@ SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
   const float share[] = {0, 0, 0.5f, 1, 1};
   for (std::size_t i = 0; i < unseen.size(); ++i)
     EXPECT_NEAR(seen[i] - unseen[i], 0.36f * 5 * share[i % 5], 1e-4f) << i;
-  // Both parts of the feature start with the frame's own value.
+  // Without a value of the frame before, both parts of the feature start with the frame's own value.
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   const auto begun = unrest_with({.from = 2, .weight = 5}, {0, 2, 3, 4, 1000}, unknown);
   const auto begun_unseen = unrest_with({}, {-1}, unknown);

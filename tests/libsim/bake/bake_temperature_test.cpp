@@ -164,7 +164,7 @@ TEST(BakeTemperature, EveryFlippedBitIsFound) {
   EXPECT_EQ(read(), "");
 }
 
-/// The same without the checksums, which would find the damage first.
+/// Decodes chunks of the wrong size directly, because in a file their checksums would find the damage first.
 TEST(BakeTemperature, ChunksOfAnotherSizeThanTheirCountsSayAreRefused) {
   const std::vector<sim::RenderParticle> two{{0, 0, 0, 0.05F}, {1, 0, 0, 0.05F}};
   const std::vector<float> radii{0.05F}, kelvin{1, 2};

@@ -8,7 +8,7 @@ using render_test::open_options;
 using sim::RenderParticle;
 
 constexpr double degree = 3.14159265358979 / 180;
-constexpr float finest_m = 0.06F;  // radius of level 3; that of level 0 is twice as large
+constexpr float finest_m = 0.06F;  // radius of level 3; level 0 has twice this radius
 
 /// Shifts every particle by up to `most_r` of its radius along each axis.
 void shake(std::vector<RenderParticle>& particles, float most_r, unsigned seed) {

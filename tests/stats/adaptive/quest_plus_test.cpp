@@ -184,7 +184,7 @@ TEST(QuestPlus, AnImpossibleOutcomeLeavesThePosteriorUnchanged) {
 }
 
 TEST(GridEstimate, SpreadsTheProbabilityOfAValueOverItsCell) {
-  // Even weights on 0 .. 9: cells from -0.5 to 9.5.
+  // Even weights on 0 .. 9 are spread over cells from -0.5 to 9.5.
   const std::vector<double> values = whole(0, 9), even(10, 1.0);
   const GridEstimate estimate = grid_estimate(values, even, 0.8);
   EXPECT_NEAR(estimate.mean, 4.5, 1e-12);

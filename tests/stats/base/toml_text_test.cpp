@@ -115,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Nuls, TomlText,
                                          Refused{"a = \"\"\"\n\\\\\\u0000\"\"\"", "2:3", "NUL"},
                                          Refused{"\"\\u0000\" = 1", "1:2", "NUL"}));
 
-/// Not parameters of a test: those are made at every start of the program, and these texts are long.
+/// The texts are long, so they are made here and not as parameters of a test, which are made at every start
+/// of the program.
 TEST(TomlTextDepth, IsBoundedInKeysHeadersListsAndTables) {
   const std::vector<Refused> texts{
       {"a" + repeated(".a", 300000) + " = 1", "1:130", "nested more than 64 levels"},

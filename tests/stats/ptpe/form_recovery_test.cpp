@@ -40,7 +40,8 @@ struct Sizes {
   double rejected = 0, written = 0, written_before = 0;
 };
 
-/// written: by all rules; written_before: by all rules except that of the form.
+/// Shares of pilots. written: all rules allow a file; written_before: all rules except the test of the form
+/// do.
 Sizes sizes_of(const Population& population, int people) {
   std::vector<char> rejected(pilots()), written(pilots()), before(pilots());
 #pragma omp parallel for schedule(dynamic)
