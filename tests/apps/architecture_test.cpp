@@ -71,7 +71,7 @@ const std::vector<Rule> rules{
     {{"apps/stats/"}, {"apps/stats/"}},
     {{"apps/study/"}, {"apps/study/"}},
     {{"apps/view/"}, {"apps/view/"}},
-    // Parts of libstudy that run or measure the fluid. All other parts know only display/stimulus.hpp.
+    // The parts of libstudy that may use libsim. All other parts know only display/stimulus.hpp.
     {{"libsim/"},
      {"apps/", "libsim/", "libstudy/analysis/", "libstudy/headset/", "libstudy/pages/window/",
       "libstudy/runner/", "libstudy/stimulus/", "libstudy/sweep/"}},

@@ -73,7 +73,7 @@ TEST(ProgramsE2e, OutputThatDoesNotArriveIsAnError) {
       EXPECT_THAT(ended.err, AllOf(HasSubstr("standard output: cannot be written"), HasSubstr("mend: ")));
     }
   }
-  // More than one buffer: the write fails long before the end.
+  // The reference fills more than one output buffer, so a write to the full device fails long before the end.
   EXPECT_EQ(to_full("vip-study reference").exit_code, 1);
 }
 

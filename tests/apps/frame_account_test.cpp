@@ -96,7 +96,8 @@ void expect_account(const Statement& row, std::map<std::string, int>& column, co
   EXPECT_EQ(row.text(column["particles"]), particles);
 }
 
-/// Whichever way the protocol sets a cell's frame rate, it determines tau.
+/// A cell's frame rate, set by "settings" or by "equal", determines tau: a live session stores the account
+/// that the bench reports at this tau.
 TEST_F(FrameAccountE2e, ALiveSessionAtNegativeTauHoldsWhatTheSolverDidAsTheBenchReportsIt) {
   const double tau = stats::ptpe_tolerance({}, 12, 3);
   ASSERT_LT(tau, -5);

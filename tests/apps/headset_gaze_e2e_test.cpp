@@ -56,7 +56,7 @@ TEST_F(HeadsetGazeE2e, TheTrackersSamplesAreKeptAtTheirOwnRate) {
   EXPECT_EQ(count("gaze a JOIN gaze b USING (presentation_id) WHERE b.sample_index = a.sample_index + 1 AND "
                   "abs(b.sampled_ns - a.sampled_ns - 25000000) > 1000"),
             0);
-  // 10 degrees to the left of the turned head.
+  // The gaze's direction is relative to the head: 10 degrees to the left, although the head is turned by 30.
   EXPECT_EQ(count("gaze WHERE abs(direction_x + " + std::to_string(std::sin(10 * degree)) +
                   ") > 1e-3 OR abs(direction_z + " + std::to_string(std::cos(10 * degree)) + ") > 1e-3"),
             0);

@@ -197,7 +197,7 @@ inline study::Json results_of(const study::TaskStudy& study, const study::PlanIn
   return study::make_results(study, request).json;
 }
 
-/// A simulated pilot and both tasks.
+/// The results of a study with a simulated pilot and both tasks.
 inline study::Json whole_study(int people, const study::TaskProtocol& first) {
   auto out = results_of(
       {.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7), first, task2(people)},

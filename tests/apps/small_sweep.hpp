@@ -23,7 +23,7 @@ inline study::CellRun run_with(double front, double kinetic, double ms, double d
   return out;
 }
 
-/// Stored as run on "a machine" with SingleDam's file.
+/// A cell stored as if "a machine" had run it with SingleDam's scene file.
 inline study::StoredCell stored(const sim::SolverSetting& setting, int seed, const study::CellRun& run) {
   static const std::string sha256 = sim::scenes_of("SingleDam").front().scene.sha256;
   return {{setting, seed}, {"a machine", "0.1.0 abc", sha256}, run};

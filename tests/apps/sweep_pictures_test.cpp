@@ -22,7 +22,7 @@ using ::testing::ThrowsMessage;
 constexpr int side = 32;
 constexpr std::size_t pixels = std::size_t{side} * side;
 
-/// Grey, and darker by `step` in the left half.
+/// A grey picture, darker by `step` in the left half.
 std::string picture(int grey, int step = 0) {
   sim::Image out{side, side, {}};
   for (std::size_t i = 0; i < pixels; ++i) {

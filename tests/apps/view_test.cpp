@@ -221,7 +221,7 @@ TEST_F(ViewE2e, PaintsTheTemperatureOfAHotJet) {
       (folder / "hot").string());
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   EXPECT_NE(ended.out.find("temperature 293.15 to 353.15 K"), std::string::npos) << ended.out;
-  // Yellow, unlike cold water and the room.
+  // Number of yellow pixels: cold water and the room have none.
   const auto yellow = [&](const std::string& name) {
     const auto picture = sim::read_png(folder / "hot" / name);
     int count = 0;

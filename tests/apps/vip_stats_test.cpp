@@ -144,7 +144,7 @@ TEST(VipStatsE2e, KeepsEveryCalibration) {
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[2].at("found"), true);
   EXPECT_EQ(lines[2].at("file"), first + "# by hand\n");
-  // A modified record stops everything.
+  // If the record of earlier fits was modified, the command refuses to write anything.
   const auto newest = study::test::bytes_of(toml);
   auto text = study::test::bytes_of(history);
   text[text.find("pilot")] = 'P';

@@ -132,7 +132,8 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
 /// Pairs of methods, with a consent page that asks for gaze and sharing, free words and a personal question.
 study::Protocol asking_pairs() { return study::parse_protocol(protocol_text("pairs"), "asking_pairs.toml"); }
 
-/// One person's session of it: words, gaze, a note and an exclusion, all of which identify the person.
+/// One person's session of asking_pairs(): words, gaze, a note and an exclusion, all of which identify the
+/// person.
 void take_part(study::Store& store, const study::OpenSession& session) {
   const bool leaves = session.plan.participant == code;
   const std::string words = leaves ? secret : "calm water, says " + session.plan.participant;

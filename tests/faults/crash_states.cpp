@@ -74,7 +74,7 @@ struct Synced {
 /// The calls on which each call on a name depends.
 std::vector<std::vector<std::size_t>> foundations(const std::vector<Call>& calls, std::size_t count) {
   std::vector<std::vector<std::size_t>> all(count);
-  std::map<std::string, std::size_t> maker;                 // of the current name
+  std::map<std::string, std::size_t> maker;                 // index of the call that made the current name
   std::map<std::string, std::vector<std::size_t>> emptied;  // calls that removed names from a folder
   for (std::size_t i = 0; i < count; ++i) {
     const Call& call = calls[i];

@@ -42,9 +42,9 @@ struct CallPlan {
 
 /// Starts counting from 0. Do not call it while another thread changes files.
 void arm_calls(const CallPlan& plan);
-/// Calls since then that change files.
+/// Calls since arm_calls() that change files.
 long counted_calls();
-/// Reads since then.
+/// Reads since arm_calls().
 long counted_reads();
 /// From now on, swapping two names fails in this process, as on network file systems (EINVAL).
 void refuse_exchanges();

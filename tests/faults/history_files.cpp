@@ -30,7 +30,8 @@ void HistoryRun::merge(const Step& step) {
     check_cleaned(database(), done.beside.left, export_was_cut_);
   };
   if (restored) {
-    // It must be refused, or bring back nobody who withdrew; other content cannot be predicted.
+    // A merge into a restored database must be refused, or bring back nobody who withdrew; other content
+    // cannot be predicted.
     const Ended ended = stations_.perform(step, station_, false, work);
     std::set<std::string> gone = here().withdrawn;
     for (const std::size_t i : from)

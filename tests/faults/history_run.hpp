@@ -22,7 +22,7 @@ class HistoryRun {
   using Work = std::function<void()>;
 
   /// Runs `work` with the step's fault. If the fault stops it, opens the station again, and repeats the
-  /// command if `always` or the step says so. Returns true if it is done.
+  /// command if `always` or the step says so. Returns true if the command is done.
   bool command(const Step& step, bool always, const Work& work);
   void session(const Step& step);
   void consent(const Step& step);

@@ -41,7 +41,7 @@ std::string missing_of(const fs::path& folder, const std::string& code) {
   for (const std::string& line : personal_content(folder / "s.db")) {
     if (line.find("|" + code + "|") != std::string::npos) ++answers;
   }
-  // Consent, age, five trials with two questions each, a remark.
+  // 13 answers: consent, age, two questions in each of five trials, a remark.
   return answers == 13 ? ""
                        : code + " ended well, and " + std::to_string(answers) + " of 13 answers are there";
 }

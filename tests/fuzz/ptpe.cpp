@@ -1,4 +1,5 @@
-/// Any bytes as a PTPE file: refused with base::Error, or read so that it writes and reads back the same.
+/// Any bytes as a PTPE file: refused with base::Error, or read. A file that was read must give the same text
+/// after it is written and read again.
 
 #include <cstdint>
 #include <cstdlib>

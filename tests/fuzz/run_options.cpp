@@ -1,5 +1,5 @@
-/// Any bytes as a run's options in a database: refused with base::Error, or read so that they write and read
-/// back the same.
+/// Any bytes as a run's options in a database: refused with base::Error, or read. Options that were read must
+/// be equal after they are written and read again.
 #include "libstudy/runner/run_options.hpp"
 
 #include <cstdint>

@@ -48,7 +48,7 @@ struct Session {
   Graphics graphics;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   bool running = false;
-  bool exiting = false;  ///< enters EXITING after it has ended
+  bool exiting = false;  ///< enters EXITING after the session has ended
   long lost_at = -1;     ///< frame from which every call fails
   long frames = 0;       ///< frames ended since xrBeginSession
   bool waited = false;   ///< a frame was waited for and has not begun
@@ -145,7 +145,7 @@ struct Runtime {
   int dropped = 0;                                ///< number of slots that the next wait skips
   bool repeats = false;                           ///< the next wait predicts the last time again
   double hang_seconds = 0;                        ///< duration for which the next wait hangs
-  std::vector<LocalTurn> local_turns;             ///< of LOCAL, from recentring
+  std::vector<LocalTurn> local_turns;             ///< turns of the space LOCAL by recentring
 };
 Runtime& runtime();
 /// Forgets everything if the profile or the log file has changed.

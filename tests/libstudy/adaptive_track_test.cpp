@@ -142,7 +142,7 @@ TEST(AdaptiveTrack, PairsKeepTheStandardAndTheirOrder) {
   EXPECT_EQ(standard_first, static_cast<int>(cells.size()) / 2);
 }
 
-/// Number of people, of so many, whose threshold lies in the 95 % interval of their 40 trials.
+/// Number of `people` whose threshold lies in the 95 % interval of their 40 trials.
 int recovered(int people) {
   const Protocol protocol = parse_protocol(quest_text, "own.toml");
   int covered = 0;

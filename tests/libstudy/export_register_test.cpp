@@ -162,7 +162,8 @@ TEST_F(Exports, ThatWereMovedAreNamedOnce) {
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
 }
 
-// Interrupted after the mark, after the rename to the draft, and during the removal.
+// The deletion of an export is interrupted after it was marked, after its rename to the draft, and while its
+// files are removed.
 TEST_F(Exports, ADeletionThatWasCutIsFinished) {
   for (const int step : {0, 1, 2}) {
     const std::string code = "Q" + std::to_string(step);

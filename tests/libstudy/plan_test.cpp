@@ -66,7 +66,8 @@ TEST(Plan, HoldsEverySettingOnceWithItsOwnSeed) {
   EXPECT_EQ(seeds.size(), 21u);
 }
 
-// For 200 people: each setting at each place, and after each other setting.
+// Counts over 200 people how often each setting is at each place, and how often it follows each other
+// setting.
 TEST(Plan, PermutesThePilotEvenlyOver200People) {
   const auto protocol = shipped("ptpe_pilot");
   constexpr std::size_t n = 21;

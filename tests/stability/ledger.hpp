@@ -121,7 +121,7 @@ class Ledger {
   std::int64_t particles_ = 0;
   std::int64_t mass_ = 0;     ///< in m_*
   double energy_ = 0;         ///< at the start, over m_*, m2/s2
-  double poured_energy_ = 0;  ///< largest energy of a poured m_* yet, over m_*, m2/s2
+  double poured_energy_ = 0;  ///< upper bound per poured m_*, over m_*, m2/s2
   double given_by_forces_ = 0, given_by_walls_ = 0;
   Vec3d open_{}, unattributed_{}, rests_{}, forces_{};
   Balance most_;

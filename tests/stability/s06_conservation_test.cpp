@@ -10,8 +10,8 @@ using namespace levels_test;
 
 /// `share` of sqrt(g d) is the limit for the drift of the mean velocity.
 void events_conserve(Backend backend, int coarse_cycles, double share) {
-  // S6: a blob without gravity, far from walls, with random velocities. A region with fine targets moves
-  // across it.
+  // S6: a blob without gravity, far from walls, with random velocities. A region of fine targets moves
+  // through it.
   auto scene = fluid_test::tank({8, 8, 8}, {12 * d, 16 * d, 12 * d});
   scene.gravity_m_s2 = 0;
   std::vector<ParticleState> start;

@@ -22,8 +22,8 @@ PairChoice choice(int participant, int first, int second, bool first_chosen) {
 TEST(LevelPreferences, CountPairsThatDifferInTheFactorAlone) {
   std::vector<PairChoice> choices;
   for (int person = 0; person < 4; ++person) {
-    choices.push_back(choice(person, 0, 1, false));       // everyone chooses level 1 at rest 0
-    choices.push_back(choice(person, 3, 2, person > 0));  // all but one choose level 1 at rest 1
+    choices.push_back(choice(person, 0, 1, false));       // everyone chooses level 1 at combination 0
+    choices.push_back(choice(person, 3, 2, person > 0));  // all but one choose level 1 at combination 1
     choices.push_back(choice(person, 0, 3, true));        // the other factors differ too: not counted
     choices.push_back(choice(person, 0, 2, true));        // same level: not counted
   }

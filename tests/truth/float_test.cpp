@@ -90,7 +90,8 @@ TEST(Float, ASphereFloatsHalfSunkAtLevel3) { floats_half_sunk(coarsest); }
 TEST(Float, ASphereFloatsHalfSunkAtMixedLevels) { floats_half_sunk(both); }
 TEST(Float, ASphereFloatsHalfSunkWithTemporalAcceleration) { floats_half_sunk(with(finest, 0.67)); }
 
-/// (m - rho V) g = (m + rho V / 2) a; walls at 2 R from the middle increase the inertia.
+/// A heavy sphere must sink with its added mass: (m - rho V) g = (m + rho V / 2) a. Walls at 2 R from its
+/// middle increase the inertia.
 void sinks_with_its_added_mass(const Afloat& afloat) {
   const auto fluid = pool_with(afloat, 2000, 0.65);
   constexpr int frames = 6;

@@ -290,7 +290,7 @@ SIM_TEST(Meeting, WhatIsPinnedStaysInTheTank) {
   }
 }
 
-/// Masses 1 and 400, in two layers and more.
+/// Balls of masses 1 and 400 lie in two layers and more.
 SIM_TEST(Meeting, AHeapOfHeavyAndLightBallsKeepsApart) {
   for (const float aside : {0.0f, 0.003f, 0.006f}) {
     BodiesApart heap;

@@ -372,7 +372,7 @@ SIM_TEST(Looks, ALostGazeStaysAndThenFollowsTheView) {
     looks.eyes[0].gaze.valid = frame < 2;
     input.look(looks);
     const Vec3 gaze = input.next_frame(0.1, 0.25).eye[0].gaze;
-    // Held for 0.1 and 0.2 s, then the view's axis.
+    // A lost gaze is held for 0.1 and 0.2 s, then the view's axis replaces it.
     EXPECT_NEAR(gaze.x, frame < 2 ? 0.70711f : 0, 1e-5f) << frame;
     EXPECT_NEAR(gaze.z, frame < 2 ? -0.70711f : -1, 1e-5f) << frame;
   }

@@ -22,7 +22,8 @@ struct Chord {
   double entry, leave, length_m, distance_m;
 };
 
-/// x right, y up, depth along the view; in doubles, by the quadratic formula.
+/// The chord of the ray with these slopes (x right, y up, depth along the view) through a particle; in
+/// doubles, by the quadratic formula.
 inline std::optional<Chord> chord(const sim::RenderParticle& p, double radius, double slope_x, double slope_y,
                                   double near_m) {
   const double x = p.x_m, y = p.y_m, z = -double{p.z_m};

@@ -86,7 +86,8 @@ std::vector<Comparison> people_with_tastes(int people, double taste, uniformity:
   return out;
 }
 
-// 95 % intervals of 1,000 studies: three standard errors are 2.1 %.
+// Shares of 1,000 studies in which 95 % intervals cover the truth; three standard errors of a share are 2.1
+// %.
 TEST(PeopleErrors, CoverWhatTheySayWherePeopleHaveTastes) {
   uniformity::Draws draws(5);
   int covered = 0, independent = 0;
