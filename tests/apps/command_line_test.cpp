@@ -125,7 +125,8 @@ TEST(ProgramsE2e, ZerosBeforeANumberAreNoOctal) {
   EXPECT_EQ(count_in(folder / "s.db", "SELECT seed FROM session"), 10);
 }
 
-/// Every program and kind of input. Opening a pipe without a writer would wait forever.
+/// Tries every program with every kind of input that is no file. Opening a pipe without a writer would wait
+/// forever.
 TEST(ProgramsE2e, InputsThatAreNoFilesAreRefusedAtOnce) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe", out = folder / "out";

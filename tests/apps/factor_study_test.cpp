@@ -128,7 +128,7 @@ TEST(FactorStudy, IntervalsOfSharesStayWithinNoughtAndOne) {
   MadeStudy made(shipped_text("hitches"));
   for (int i = 0; i < 4; ++i) {
     const std::string person = "P" + std::to_string(i);
-    made.answer(person, 2, {}, i == 0 ? 1 : 0);  // Student's t of 0, 0, 0, 1 begins at -0.55
+    made.answer(person, 2, {}, i == 0 ? 1 : 0);  // Student's interval of 0, 0, 0, 1 begins at -0.55
     made.answer(person, 4, {}, 0);               // nobody says yes
   }
   const Json cells = made.results("").at("descriptives").at(0).at("cells");

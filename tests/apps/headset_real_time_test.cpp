@@ -67,7 +67,7 @@ TEST_F(HeadsetRealTimeGl, NoSlotIsMissedWhileAStimulusStartsAndComputes) {
   const auto played = study::play_trial(std::vector<std::int64_t>(8, 200'000'000), {}, stimulus, display,
                                         clock, {.late_after_ns = 500'000, .overrun_ns = 5'000'000'000}, {});
   display.clear();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // as while an answer is written
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // as long as writing an answer may take
   display_.reset();
 
   // Two starts and eight steps on the slots' thread would miss 40 slots or more.

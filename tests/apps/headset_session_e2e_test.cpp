@@ -136,7 +136,7 @@ TEST_F(HeadsetSessionE2e, EachPictureIsOnForTheSlotsOfItsSetting) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(calls(), Not(HasSubstr("\nnote")));
   EXPECT_THAT(ended.out, HasSubstr("2 of 2 trials pass"));
-  std::map<int, int> pictures;  // by slots
+  std::map<int, int> pictures;  // number of pictures by the slots that they last
   for (const int hold : holds_of(calls())) ++pictures[hold];
   EXPECT_EQ(pictures, (std::map<int, int>{{9, 10}, {3, 30}}));
 

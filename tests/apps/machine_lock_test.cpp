@@ -29,7 +29,7 @@ class MachineLockTest : public ::testing::Test {
   const std::filesystem::path file_ = folder_ / "vip-bench.lock";
 };
 
-/// Tries the lock like another program.
+/// Takes the lock as another program does.
 class Other {
  public:
   explicit Other(const std::filesystem::path& file) : fd_(::open(file.c_str(), O_RDONLY | O_CREAT, 0644)) {}

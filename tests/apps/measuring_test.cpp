@@ -123,7 +123,7 @@ TEST(Measure, SeesTheLaterFramesThatAreDearer) {
 }
 
 TEST(Measure, ANativeTrialLastsAsLongAsItWould) {
-  const auto protocol = study::test::pairs();  // native, 1 s
+  const auto protocol = study::test::pairs();  // native timing, showings of 1 s
   SlowStage fast([](std::int64_t) { return 0.001; }, 0.001);
   EXPECT_EQ(measured(protocol, fast).compute_s.size(), 60u);
   SlowStage slow([](std::int64_t) { return 0.3; }, 0.1);

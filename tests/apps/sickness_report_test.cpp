@@ -89,7 +89,7 @@ TEST(SicknessJson, FmsIsToldByBlockAndByAsking) {
 
 TEST(SicknessJson, AMissingItemIsCountedAndEmptiesItsScales) {
   auto sessions = three();
-  sessions[0].ssq[1].answers[6] = {};  // sweating
+  sessions[0].ssq[1].answers[6] = {};  // the item sweating has no answer
   const study::Json json = study::sickness_json(sessions, quick_plan());
   EXPECT_EQ(json[0]["ssq"]["incomplete"], 1);
   EXPECT_EQ(score(json, 0)["change"]["n"], 1);

@@ -217,7 +217,7 @@ TEST(TaskData, TwoVisitsOfTask2AreRefusedInTheTestOnly) {
 
 TEST(TaskData, AScoreThatLacksAnItemIsMissing) {
   auto protocol = made_study::task1(3);
-  protocol.sessions[0].trials[0].answers[2].score.reset();  // unrealism
+  protocol.sessions[0].trials[0].answers[2].score.reset();  // the answer about unrealism
   const auto data = select(of(protocol));
   const auto tables = study::score_tables(data, {});
   ASSERT_THAT(tables, SizeIs(3));

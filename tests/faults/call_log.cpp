@@ -14,7 +14,7 @@ constexpr std::size_t room = std::size_t{1} << 28;
 
 struct Head {
   Call::Kind kind;
-  std::uint32_t path, to, bytes;  // lengths
+  std::uint32_t path, to, bytes;  // lengths of the texts
   std::uint64_t file;
   std::int64_t at;
 };

@@ -16,7 +16,7 @@ namespace faults {
 struct Command {
   using Work = std::function<void(const fs::path& folder)>;
   std::string name;
-  Work prepare;  ///< into an empty folder
+  Work prepare;  ///< makes the stations in an empty folder
   Work act;
   Work again;  ///< what a user types after a fault; null: act
   Work other;  ///< another command that may follow instead; null: resume in each station

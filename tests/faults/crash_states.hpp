@@ -32,7 +32,7 @@ struct Tree {
     bool folder = false;
   };
   std::map<std::string, Name> names;
-  std::map<std::uint64_t, std::string> files;  ///< bytes
+  std::map<std::uint64_t, std::string> files;  ///< bytes of each file, by its number
 };
 
 Tree read_tree(const std::filesystem::path& folder);

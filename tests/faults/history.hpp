@@ -36,7 +36,7 @@ Problems run_history(const std::vector<Step>& steps, const fs::path& folder, std
 std::vector<Step> shrink(std::vector<Step> steps, const fs::path& folder, const Problems& problems);
 
 struct HistoryOptions {
-  long count = 100, only = -1;  ///< only: runs this history alone, with its steps as text
+  long count = 100, only = -1;  ///< only: runs this history alone and prints its steps
   unsigned seed = 1;
   int jobs = 1;
 };

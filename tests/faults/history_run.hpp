@@ -48,7 +48,7 @@ class HistoryRun {
   Problems problems_;
   std::string told_;
   bool over_ = false;
-  bool export_was_cut_ = false;  // by a fault, at any station
+  bool export_was_cut_ = false;  // true after a fault cut an export, at any station
 };
 
 }  // namespace faults

@@ -20,7 +20,7 @@ struct Station {
   Decisions::Known known;
   std::set<std::string> people, withdrawn;             ///< Person::key()
   std::set<std::pair<std::string, int>> acknowledged;  ///< units answered here
-  std::set<std::string> exports;                       ///< folders
+  std::set<std::string> exports;                       ///< folders of the station's exports
   bool restored = false;  ///< an older database was restored: writers must refuse until it is salvaged
 };
 

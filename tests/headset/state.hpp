@@ -56,7 +56,7 @@ struct Session {
   Frame waiting, drawing;
   std::set<std::uint64_t> attached, synced;  ///< action sets
   std::map<std::string, Input> inputs;
-  bool told_profiles = false;   ///< the event for them was sent
+  bool told_profiles = false;   ///< the event that profiles changed was sent
   std::deque<Located> located;  ///< newest last
 };
 

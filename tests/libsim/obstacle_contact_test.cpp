@@ -328,7 +328,7 @@ TEST(ObstacleContact, LittleWaterIsCaughtBetweenFaces) {
     most = std::max(most, inside);
     leap_m_s = std::max(leap_m_s, now[1].velocity_m_s[1]);
   }
-  // Measured: 4 of 976, 0.13 d, 0.5 m/s.
+  // Measured: 4 of 976 particles inside bodies, at most 0.13 d deep; the upper body leaps at 0.5 m/s.
   EXPECT_LE(most, 10);
   EXPECT_LT(deepest_m, 0.25 * fluid->spacing_m());
   EXPECT_LT(leap_m_s, 1);

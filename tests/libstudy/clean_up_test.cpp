@@ -160,7 +160,7 @@ TEST(CleanUp, WhatCannotBeDoneStaysAndIsNamedUntilItCan) {
   back_up(path, ".v2-old.bak");
   base::write_file_atomically(broken, std::string(5000, 'x'));
   EXPECT_THAT(withdraw(path, "P02").beside.left, ElementsAre(HasSubstr(".v1-old.bak")));
-  EXPECT_THAT(files_with(folder.path(), secret), IsEmpty());  // all that is possible is done
+  EXPECT_THAT(files_with(folder.path(), secret), IsEmpty());  // all but the broken backup is cleaned
   EXPECT_THAT(Store(path, Open::Write).left_to_clean(), ElementsAre(HasSubstr(".v1-old.bak")));
   write_station(folder / "south.db", "south", {"P03"});
   EXPECT_THAT(merge({folder / "south.db"}, path).beside.left, ElementsAre(HasSubstr(".v1-old.bak")));

@@ -242,7 +242,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     ::kill(merging, SIGCONT);
   }
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_GT(refused, 0);  // during the merge's own commits
+  EXPECT_GT(refused, 0);  // refused while the merge commits
   ASSERT_GT(entered.size(), 10u);
   for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;
 }

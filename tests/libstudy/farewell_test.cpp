@@ -60,7 +60,7 @@ TEST(Farewell, AKeyHitByMistakeAtConsentSendsNobodyAway) {
 
 TEST(Farewell, AStopRestsOffersTheLastQuestionnaireAndAsksWhatBecomesOfTheData) {
   OneSession one(paced_pairs("", ssq_toml));
-  one.person.says["ssq_3"] = {};  // left out
+  one.person.says["ssq_3"] = {};  // this item has no answer
   const auto ending = one.run(wish_at_frame_5(Request::EndSession, 1));
   EXPECT_EQ(ending.value().how, EarlyEnd::Stopped);
   const auto seen = from(one.person.seen, "tell over");

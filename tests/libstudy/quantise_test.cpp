@@ -146,14 +146,14 @@ TEST(Quantise, BoundsHoldWhatTheBruteForceFinds) {
   study::HoldTarget target;
   target.refresh_hz = 60;
   target.longest = 5;
-  target.mean = 24;  // 2.5 periods
+  target.mean = 24;  // frames last 2.5 periods on average
   const auto bounds = study::sd_bounds(target);
   double least = 1e9, most = 1e9;
   for (double c = 20; c <= 60; c += 0.05) {
     least = std::min(least, extreme_square(40, 100, 5, 60, c, false));
     most = std::min(most, extreme_square(40, 100, 5, 60, c, true));
   }
-  EXPECT_NEAR(bounds.low, 5, 1e-9);  // halves of 30 and 20 frames/s
+  EXPECT_NEAR(bounds.low, 5, 1e-9);  // half of the frames at 30, half at 20 frames/s
   EXPECT_NEAR(std::sqrt(least), bounds.low, 0.01);
   EXPECT_LE(std::sqrt(most), bounds.high + 0.01);
   EXPECT_GE(std::sqrt(most), bounds.high - 0.5);

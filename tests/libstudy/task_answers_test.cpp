@@ -158,7 +158,7 @@ class LabSession : public ::testing::Test {
 
 TEST_F(LabSession, RealismAndSicknessStandUnderTheirQuestions) {
   const TaskSession session = read();
-  ASSERT_THAT(session.trials, SizeIs(13));  // practice, ten, two repeats
+  ASSERT_THAT(session.trials, SizeIs(13));  // one practice trial, ten trials, two repeats
   const TaskTrial& trial = session.trials.at(3);
   EXPECT_EQ(trial.kind, "stimulus");
   EXPECT_FALSE(trial.second.has_value());

@@ -20,7 +20,7 @@ TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
   };
   EXPECT_EQ(rule.next(), 2);
   EXPECT_EQ(after(30), 2);  // frame 1 uses the start's speed
-  EXPECT_EQ(after(0), 4);   // frame 2 uses that of frame 0: 30 / 60 / 0.15 = 3.33
+  EXPECT_EQ(after(0), 4);   // frame 2 uses the speed of frame 0: 30 / 60 / 0.15 = 3.33
   EXPECT_EQ(after(0), 2);
   EXPECT_EQ(after(90), 2);
   EXPECT_EQ(after(45), 8);

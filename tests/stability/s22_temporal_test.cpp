@@ -43,7 +43,7 @@ void beta_one_changes_no_bit(Backend backend) {
   auto options = dam_options(backend, 256);
   options.start = settled_dam(scene, options);
   const auto off = sim::make_simulation(scene, options);
-  options.temporal.always = true;  // a measured tau
+  options.temporal.always = true;  // tau is measured
   const auto on = sim::make_simulation(scene, options);
   EXPECT_NE(on->explain().find("frame start  activation"), std::string::npos);
   EXPECT_NE(off->explain().find("-  activation"), std::string::npos);

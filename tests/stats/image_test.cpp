@@ -65,7 +65,7 @@ TEST(Psnr, SeesTheMaskOnly) {
   std::vector<std::uint8_t> mask(64, 0);
   for (std::size_t i = 0; i < 16; ++i) mask[i] = 255;
   for (std::size_t c = 0; c < 24; ++c) b.rgb[c] = 110;  // the first 8 pixels, half of the mask
-  b.rgb[3 * 63] = 0;                                    // outside of it
+  b.rgb[3 * 63] = 0;                                    // outside the mask
   const auto masked = stats::mean_squared_error(a.view(), b.view(), mask);
   EXPECT_EQ(masked.pixels, 16u);
   EXPECT_DOUBLE_EQ(masked.value, 50);
@@ -86,7 +86,7 @@ TEST(Flicker, SeesWhatChangesAndNotWhatStays) {
   const Image calm = flat(8, 4, 100);
   const Image offset = flat(8, 4, 130);
   Image pops = offset;
-  pops.rgb[0] = 133;  // one channel of 96 by 3
+  pops.rgb[0] = 133;  // one of 96 values differs by 3
   const auto of = [&](const Image& before, const Image& now) {
     return stats::flicker({before.view(), now.view()}, {calm.view(), calm.view()}).value;
   };
@@ -290,7 +290,7 @@ TEST(Flip, LooksAtTheMaskOnly) {
   EXPECT_TRUE(std::isnan(stats::flip(a.view(), b.view(), 20, none).value));
 }
 
-// Weights far from a pixel underflow.
+// At one pixel per degree the weights of pixels that are far away underflow.
 TEST(Flip, TellsOfPicturesWithFewPixelsADegree) {
   const double seen = stats::flip(noise(40, 30, 1).view(), noise(40, 30, 2).view(), 1).value;
   EXPECT_GT(seen, 0.5);

@@ -9,7 +9,7 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 
-constexpr double d = 0.05;       // of level 0
+constexpr double d = 0.05;       // spacing of level 0, m
 constexpr double height = 0.2;   // height of the plate: four spacings of level 0, two of level 3
 constexpr double side = 1.2;     // side of the plate
 constexpr double start_x = 1.6;  // the plate's middle, in a tank of 4.8 m

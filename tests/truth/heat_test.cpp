@@ -11,7 +11,7 @@ using namespace truth_test;
 using sim::EffectKind;
 using sim::EffectOption;
 
-constexpr double d = 0.05;  // of level 0
+constexpr double d = 0.05;  // spacing of level 0, m
 constexpr double within = 0.15;
 /// Particles at a wall have no neighbours behind it, so they conduct less along it. In six layers of level 3
 /// the slab loses 0.159 of its diffusivity, in twelve layers of level 0 0.068.

@@ -10,13 +10,13 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 
-constexpr double d_fine = 0.05;  // of level 0
+constexpr double d_fine = 0.05;  // spacing of level 0, m
 
 /// Particles of one level in a tank with slip walls.
 struct Tank {
   int level = 0;                          ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;  ///< must be able to hold this level
-  bool mixed = false;                     ///< half at level 0
+  bool mixed = false;                     ///< half of the fluid is at level 0
   double beta = 1;
   Backend backend = Backend::Cpu;
 
@@ -63,7 +63,7 @@ double slope_left(const Tank& tank) {
   return left;
 }
 
-constexpr double flat = 0.2;  ///< d
+constexpr double flat = 0.2;  ///< bound of the remaining slope, in spacings
 
 TEST(TruthLevelling, ThickFluidOfOneLevelComesToLevel) {
   NEEDS_EFFECTS;

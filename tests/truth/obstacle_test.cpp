@@ -14,7 +14,7 @@ struct Sunk {
   bool mixed = false;   ///< level 0 on one side, 3 on the other
   double beta = 1;
   Backend backend = Backend::Cpu;
-  int rest_frames = 60;  ///< before the force is measured
+  int rest_frames = 60;  ///< frames before the force is measured
 };
 
 /// Mean force of the water on the sphere over a second, over rho g V.

@@ -10,7 +10,7 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 
-constexpr double d = 0.05;  // of level 0
+constexpr double d = 0.05;  // spacing of level 0, m
 constexpr double rho = 1000;
 constexpr double nu = 0.3;
 

@@ -9,7 +9,7 @@ namespace {
 using namespace truth_test;
 using sim::EffectKind;
 
-constexpr double d = 0.05;  // of level 0
+constexpr double d = 0.05;  // spacing of level 0, m
 constexpr int spacings = 12;
 constexpr int frames = 12;  // frames, with two substeps each, in which the wave falls to 1 / e
 

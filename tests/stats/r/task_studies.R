@@ -192,8 +192,7 @@ person_choices <- function(rows, a, b) {
   list(k = as.vector(tapply(chose_a, own$person, sum)), n = as.vector(tapply(chose_a, own$person, length)))
 }
 
-# Exact permutation test of each person's share less one half: all signs are equally likely, and the distribution of the
-# sum is computed by convolution.
+# Exact permutation test of each person's share less one half: all signs are equally likely; the sum by convolution.
 share_test <- function(people, side) {
   steps <- (2 * people$k - people$n) * (lcm(people$n) / people$n)
   mass <- 1
