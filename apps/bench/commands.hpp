@@ -28,7 +28,8 @@ void add_stability_command(CLI::App& app);
 /// vip-bench table1: the paper's Table 1, the scores of the methods' pictures against those of HiRes.
 void add_table1_command(CLI::App& app);
 
-/// vip-bench table2: the paper's Table 2, particles, milliseconds by part and speed-up of the five methods.
+/// vip-bench table2: the paper's Table 2. For each of the five methods it has the number of
+/// particles, the milliseconds of each part of a frame, and the speed-up.
 void add_table2_command(CLI::App& app);
 
 }  // namespace apps

@@ -13,7 +13,7 @@
 
 namespace measure {
 
-/// Options of both commands, as typed.
+/// Options that `vip-bench table1` and `vip-bench table2` share, as typed.
 struct TableOptions {
   std::string scene = "all";
   std::string n_star = "32k";    ///< one, or several separated by commas

@@ -56,9 +56,10 @@ class RenderTimer {
   /// picture to the fluid.
   void look(sim::Simulation& fluid);
 
-  /// Figures as a JSON object; null before the first picture since warm_up(). Median, 95th and 99th
-  /// percentile of render_ms and transfer_ms over these pictures, the median of each pass, the way of
-  /// transfer, sizes, OpenGL, and counts of the last picture.
+  /// Figures of the pictures since warm_up() as a JSON object; null without such a picture. Median, 95th and
+  /// 99th percentile of render_ms and transfer_ms; the median time of each pass in ms; how particles reach
+  /// OpenGL; width and height of a picture and the number of views; the OpenGL driver; and for the last
+  /// picture the number of fluid pixels without a front particle and of particles outside the tank.
   base::Json figures() const;
 
  private:

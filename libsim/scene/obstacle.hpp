@@ -43,8 +43,9 @@ struct BodyMotion {
   // Each of the following vectors except others_n_s is 0 unless the body is free.
   std::array<double, 3> velocity_m_s{};  ///< of its centre
   std::array<double, 3> spin_rad_s{};
-  /// Impulse from the water that is not yet applied to the body. A light body receives it with a delay,
-  /// because the water that moves along with the body takes a share.
+  /// Impulse from the water that is not yet applied to the body. In each substep the applied force moves
+  /// towards the water's force by the share mass / (mass + added mass) of their difference: a light body
+  /// follows with a delay.
   std::array<double, 3> owed_n_s{};
   std::array<double, 3> walls_n_s{};  ///< impulse received from walls in the last frame
   /// Impulse received from other obstacles in the last frame. Obstacles that are not free receive it too, so

@@ -72,7 +72,7 @@ class Placement {
  private:
   std::vector<PlacementSetting> settings_;
   PlacementRules rules_;
-  std::vector<double> deltas_;  ///< distinct standard deviations, ascending
+  std::vector<double> deltas_;  ///< distinct standard deviations of the frame rate in settings_, ascending
   int lowest_ = 1;
   std::vector<double> a_values_, b_values_;  ///< value at each parameter point of quest_
   QuestPlus quest_;

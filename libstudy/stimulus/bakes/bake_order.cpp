@@ -118,7 +118,7 @@ sim::BakeHeader header_of(const BakeOrder& order) {
     if (!header.reference_k)
       throw base::Error(order.fluid.scene.string(),
                         "has no heat, and so no temperatures to paint, with " + header.method,
-                        "list heat as an [[effect]] for that water, or leave the overlay out");
+                        "list heat as an [[effect]] that acts with this method, or leave the overlay 'temperature' out");
     header.overlay = "temperature";
   }
   header.view = view_of(order, scene, traits.adaptive());

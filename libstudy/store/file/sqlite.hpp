@@ -81,7 +81,8 @@ class Connection {
   void distrust(Work limit = Work::OfASchema);
   /// Ends distrust(). Call it once the file is known to have the schema of vip-study.
   void recognise();
-  /// Forbids from now on to change the file's tables, views and triggers, and to attach other files.
+  /// From now on forbids creating, altering or dropping tables, views and triggers, and attaching other
+  /// files. Rows can still be changed.
   void seal();
   /// Makes each later commit that changes rows also write the page that identifies the database
   /// (foreign_log.hpp).

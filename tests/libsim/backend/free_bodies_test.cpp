@@ -18,7 +18,7 @@ Body brick() {
   out.turn = {0, 0, 0, 1};
   return out;
 }
-/// A free body of density 1, in units of m_*.
+/// The mass and the inertia of a body as large as `body`, with one unit of mass in each unit of volume.
 FreeBody made_of(const Body& body) {
   FreeBody out{};
   const Vec3 h = body.half;
