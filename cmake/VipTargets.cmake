@@ -85,17 +85,17 @@ function(vip_shared_headers name)
   endif()
 endfunction()
 
-# vip_unity(TARGET [FIRST regex] [APART sources...]) compiles the sources of a target in units of up to 150
-# kB. Headers are then read, and templates instantiated, once for each unit. Therefore a name in an anonymous
-# namespace may occur only once in a target; this does not apply to the sources after APART, which are
-# compiled separately. Sources are added to the units in the order of their paths, but sources that match
-# FIRST before all others, so that they share units. Each file still includes what it uses, which a build with
-# -DVIP_UNITY=OFF verifies.
+# vip_unity(TARGET [FIRST regex] [EACH n] [APART sources...]) compiles the sources of a target in units of up
+# to 150 kB; with EACH, in units of up to n sources of one folder. Headers are then read, and templates
+# instantiated, once for each unit. Therefore a name in an anonymous namespace may occur only once in a target;
+# this does not apply to the sources after APART, which are compiled separately. Sources are added to the units
+# in the order of their paths, but sources that match FIRST before all others, so that they share units. Each
+# file still includes what it uses, which a build with -DVIP_UNITY=OFF verifies.
 function(vip_unity target)
   if(NOT VIP_UNITY)
     return()
   endif()
-  cmake_parse_arguments(arg "" "FIRST" "APART" ${ARGN})
+  cmake_parse_arguments(arg "" "FIRST;EACH" "APART" ${ARGN})
   set(apart)
   foreach(source IN LISTS arg_APART)
     get_filename_component(source ${source} ABSOLUTE)
@@ -109,20 +109,31 @@ function(vip_unity target)
     list(FILTER sources INCLUDE REGEX "${arg_FIRST}")
     list(FILTER rest EXCLUDE REGEX "${arg_FIRST}")
   endif()
-  set(unit 0)
+  set(number 0)
   set(bytes 0)
   foreach(source IN LISTS sources rest)
     get_filename_component(source ${source} ABSOLUTE)
     if(source IN_LIST apart OR NOT source MATCHES "\\.cpp$")
       continue()
     endif()
-    file(SIZE ${source} size)
-    math(EXPR bytes "${bytes} + ${size}")
-    if(bytes GREATER 150000)
-      math(EXPR unit "${unit} + 1")
-      set(bytes ${size})
+    if(arg_EACH)
+      get_filename_component(folder ${source} DIRECTORY)
+      file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+      string(MAKE_C_IDENTIFIER ${folder} folder)
+      list(APPEND sources_${folder} ${source})
+      list(LENGTH sources_${folder} count)
+      math(EXPR number "(${count} - 1) / ${arg_EACH}")
+      set(unit ${folder}_${number})
+    else()
+      file(SIZE ${source} size)
+      math(EXPR bytes "${bytes} + ${size}")
+      if(bytes GREATER 150000)
+        math(EXPR number "${number} + 1")
+        set(bytes ${size})
+      endif()
+      set(unit ${target}_${number})
     endif()
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${unit})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${unit})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()

@@ -116,9 +116,9 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   if (sim::TemperatureScale(acting).heat()) header.reference_k = sim::reference_temperature(scene);
   if (order.fluid.paint_temperature) {
     if (!header.reference_k)
-      throw base::Error(order.fluid.scene.string(),
-                        "has no heat, and so no temperatures to paint, with " + header.method,
-                        "list heat as an [[effect]] that acts with this method, or leave the overlay 'temperature' out");
+      throw base::Error(
+          order.fluid.scene.string(), "has no heat, and so no temperatures to paint, with " + header.method,
+          "list heat as an [[effect]] that acts with this method, or leave the overlay 'temperature' out");
     header.overlay = "temperature";
   }
   header.view = view_of(order, scene, traits.adaptive());
