@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "libsim/view/gbuffer.hpp"
 #include "libsim/simulation.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 namespace measure {
 
