@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of vip-stats. Each has its own file and adds itself to the program.
+/// The commands of vip-stats. Each function has its own file and adds its command or commands to the program.
 
 namespace CLI {
 class App;

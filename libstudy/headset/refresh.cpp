@@ -32,8 +32,10 @@ void RefreshControl::request(double hz) const {
   const auto found =
       std::find_if(rates_.begin(), rates_.end(), [&](double rate) { return std::abs(rate - hz) < 0.01; });
   if (found == rates_.end()) {
-    throw base::Error("headset", fmt::format("{:g} Hz is not one of its refresh rates", hz),
-                      "use a rate that vip-study headset lists; if it lists none, request no rate");
+    throw base::Error(
+        "headset", fmt::format("{:g} Hz is not one of its refresh rates", hz),
+        "set refresh_hz of the protocol's [headset] to a rate that vip-study headset lists; if it lists "
+        "none, remove refresh_hz");
   }
   session_.call<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB", session_.get(),
                                                    static_cast<float>(*found));

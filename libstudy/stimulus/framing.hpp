@@ -20,8 +20,8 @@ struct RoomRay {
   std::array<double, 3> direction{};  ///< direction of the ray, of any length except 0
 };
 
-/// Gaze and visual angle of the viewer of a fluid. With empty functions, the gaze is at the middle of the
-/// picture and the visual angle is unknown.
+/// Gaze and visual angle of the viewer of a fluid. With empty functions the visual angle is unknown, and the
+/// gaze is at the middle of the picture; in a headset it is straight ahead of the left eye.
 struct Viewing {
   /// Gaze point in a picture of this width and height, px from its lower left corner; none if unknown.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;

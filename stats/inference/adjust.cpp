@@ -60,8 +60,8 @@ Result<AdjustedP> adjust(std::span<const double> p, Adjustment method, std::size
   }
   if (order.empty()) return Refusal{"no p-value in the family"};
   if (family != 0 && family < order.size())
-    return Refusal{"a family of " + std::to_string(family) + " with " + std::to_string(order.size()) +
-                   " p-values"};
+    return Refusal{"a family of " + std::to_string(family) + " is smaller than its " +
+                   std::to_string(order.size()) + " p-values"};
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
 
   AdjustedP out{.p = Values(p.size(), std::numeric_limits<double>::quiet_NaN()),

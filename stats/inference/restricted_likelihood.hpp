@@ -19,7 +19,8 @@ class RestrictedLikelihood {
   RestrictedLikelihood(std::span<const std::vector<double>> columns, std::span<const double> y,
                        std::span<const int> participant, std::span<const int> thing);
 
-  /// The parts of the likelihood at one pair of lambdas. V is the covariance matrix of y divided by sigma^2,
+  /// The parts of the likelihood at one pair of lambdas, which are the standard deviations of the two random
+  /// effects, each divided by sigma. V is the covariance matrix of y divided by sigma^2,
   /// and r = y - X beta.
   struct At {
     std::vector<double> beta;                ///< the estimate by generalised least squares

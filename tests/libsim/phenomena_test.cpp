@@ -131,8 +131,9 @@ void crown_dry_spot_and_ripples(Backend backend) {
   const double depth = phenomena::disc_depth(late, axis, 2.5, run.spacing());
   std::printf("crown up to %.2f m, depth of the dry spot %.3f m, ripple at r = %.2f, %.2f, %.2f m\n", crown,
               depth, ripple[0], ripple[1], ripple[2]);
-  // The sheet is a spacing or two thick and breaks into drops by chance: on a GPU 3.4 to 3.9 m were measured
-  // at n_* = 24k to 40k, and without the calming of still water 3.6 to 5.3 m.
+  // The sheet is one or two particle spacings thick and breaks into drops by chance. On a GPU, HiRes with
+  // n_* = 24k to 40k (8 n_* particles) gave 3.4 to 3.9 m, and 3.6 to 5.3 m without the calming of still
+  // water.
   EXPECT_GE(crown, 3.1);
   EXPECT_LE(depth, 0.25);
   EXPECT_GT(ripple[1], ripple[0]);

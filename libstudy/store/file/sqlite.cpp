@@ -119,7 +119,8 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_EXRESCODE;
   if (sqlite3_open_v2("", &handle_, flags, nullptr) != SQLITE_OK) {
     sqlite3_close_v2(std::exchange(handle_, nullptr));
-    throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
+    throw base::Error(path_.string(), "needs a temporary database, for which there is too little memory",
+                      "close other programs, then try again");
   }
   protect();
   // Keeps the journal and temporary tables of the temporary database in memory instead of in files.
