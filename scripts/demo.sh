@@ -28,7 +28,8 @@ phase "Set up"
 run ./scripts/setup.sh build
 phase "Build"
 run cmake --preset release
-run cmake --build --preset release --target vip-study vip-stats vip-view
+# One job per processor: with ninja's additional job the same build took 4 % more processor time on two.
+run cmake --build --preset release --parallel "$(nproc)" --target vip-study vip-stats vip-view
 built=$SECONDS
 
 mkdir -p "$out"
