@@ -28,7 +28,7 @@ phase "Set up"
 run ./scripts/setup.sh build
 phase "Build"
 run cmake --preset release
-# One job per processor: with ninja's additional job the same build took 4 % more processor time on two.
+# One job per processor: with ninja's additional job the same build took 5 % more processor time on two processors.
 run cmake --build --preset release --parallel "$(nproc)" --target vip-study vip-stats vip-view
 built=$SECONDS
 
