@@ -142,7 +142,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   Schedule out;
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
-  // The columns that have values before the first pass, because they are set when a particle is created.
+  // Columns that have values before the first pass: creating a particle sets them.
   ColumnSet written = out.columns | columns(Column::Target, Column::History) | ruled_columns();
   for (const auto& stage : stages) {
     const std::string reason = reason_for(stage, demand);

@@ -18,10 +18,10 @@ struct TrackAnswer {
   int score = 0;              ///< answer to Procedure::question
 };
 
-/// The trials of one group of cells in random order, with the planned number of trials for each track. As a
-/// placeholder, each trial has the first cell of its track, which chosen_trial() replaces before the trial is
-/// shown. In a design with pairs, each trial also has the standard; every second trial of a track shows the
-/// standard first.
+/// The trials of one group of cells in random order, with the planned number of trials for each track. Each
+/// trial holds the first cell of its track until chosen_trial() replaces it, before the trial is shown. In a
+/// design with pairs, each trial also has the standard; every second trial of a track shows the standard
+/// first.
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 

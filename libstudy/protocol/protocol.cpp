@@ -9,6 +9,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/nearest.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -178,7 +179,7 @@ void check_content(const base::TomlTable& table, const ContentRules& content, co
 
 std::string text_of(const base::TomlTable& table, std::string_view key) {
   const std::string value = table.string(key);
-  if (value.find_first_not_of(" \t\r\n") == std::string::npos) table.fail(key, "is empty", "write a text");
+  if (base::is_blank(value)) table.fail(key, "is empty", "write a text");
   return value;
 }
 

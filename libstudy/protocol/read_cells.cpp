@@ -7,6 +7,7 @@
 #include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/protocol/readers.hpp"
 #include "stats/base/nearest.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -132,8 +133,7 @@ std::vector<std::string> distinct_words(const base::TomlTable& table, std::strin
   const auto words = table.strings(key);
   check_distinct(table, key, words);
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i].find_first_not_of(" \t\r\n") == std::string::npos)
-      table.fail_at(key, i, "is an empty word", "remove it");
+    if (base::is_blank(words[i])) table.fail_at(key, i, "is an empty word", "remove it");
   }
   return words;
 }

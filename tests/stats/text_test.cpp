@@ -50,5 +50,18 @@ TEST(Text, WordsAreJoinedByCommas) {
   EXPECT_EQ(joined({"a", "", "b"}), "a, , b");
 }
 
+TEST(Text, AnEnglishListEndsWithAnd) {
+  EXPECT_EQ(enumerated({}), "");
+  EXPECT_EQ(enumerated({"a"}), "a");
+  EXPECT_EQ(enumerated({"a", "b"}), "a and b");
+  EXPECT_EQ(enumerated({"a", "b", "c"}), "a, b and c");
+}
+
+TEST(Text, BlankTextHasNoVisibleCharacter) {
+  EXPECT_TRUE(is_blank(""));
+  EXPECT_TRUE(is_blank(" \t\r\n"));
+  EXPECT_FALSE(is_blank(" a "));
+}
+
 }  // namespace
 }  // namespace base

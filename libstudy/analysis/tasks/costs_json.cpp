@@ -101,7 +101,7 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// The stimulus's scene, read from its file now. Refused if it is missing, if a session did not record this
+/// Reads the stimulus's scene from its file. A refusal if the file is missing, if a session did not record the
 /// file's SHA-256, or if the stimulus has a level of effects other than the scene's.
 stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const ShownStimulus& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)
