@@ -101,8 +101,8 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// Reads the stimulus's scene from its file. A refusal if the file is missing, if a session did not record the
-/// file's SHA-256, or if the stimulus has a level of effects other than the scene's.
+/// Reads the stimulus's scene from its file. A refusal if the file is missing, if a session did not record
+/// the file's SHA-256, or if the stimulus has a level of effects other than the scene's.
 stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const ShownStimulus& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)
     return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +
