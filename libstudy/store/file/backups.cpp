@@ -85,8 +85,8 @@ std::vector<std::int64_t> sessions_in_schema_1(const fs::path& backup, const std
   return sessions_of(*upgraded, person);
 }
 
-/// Deletes sessions from a backup of schema 1, which has no tombstones. A trigger forbids to delete events,
-/// so the transaction drops the trigger and makes it again.
+/// Deletes sessions from a backup of schema 1, which has no tombstones. A trigger forbids the deletion of
+/// events, so the transaction drops the trigger and makes it again.
 void bury_in_schema_1(Connection& backup, const std::vector<std::int64_t>& sessions) {
   const std::string trigger = backup.text("SELECT sql FROM sqlite_schema WHERE name = 'event_is_kept'");
   Transaction transaction(backup);
@@ -141,8 +141,8 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   const auto sessions = version == 1 ? sessions_in_schema_1(path, person) : sessions_of(backup, person);
   if (version == 1 && !sessions.empty()) bury_in_schema_1(backup, sessions);
   if (version > 1 && !sessions.empty()) bury_later(backup, person, version);
-  // An earlier deletion may have been interrupted before VACUUM. A tombstone shows an earlier deletion.
-  // Schema 1 has no tombstones, so VACUUM runs for every writable backup of it.
+  // An earlier deletion may have been interrupted before VACUUM. A tombstone shows an earlier deletion. A
+  // backup of schema 1 has no tombstones, so VACUUM runs if it is writable.
   if (sessions.empty() && !(version == 1 ? ::access(path.c_str(), W_OK) == 0 : is_buried(backup, person)))
     return false;
   backup.execute("VACUUM");

@@ -1,7 +1,7 @@
 #pragma once
-/// Backups beside a database. An upgrade makes "<database>.v<version>-<UTC time>.bak". A session whose file
-/// was removed or replaced saves "<database>.rescued-<UTC time>.db", or if that fails, only SQLite's
-/// write-ahead log as "<database>.rescued-<UTC time>.wal".
+/// Backups beside a database. An upgrade makes "<database>.v<version>-<UTC time>.bak". A program that finds
+/// its database removed, replaced or overwritten by another program saves "<database>.rescued-<UTC time>.db"
+/// or, if that fails, only SQLite's write-ahead log as "<database>.rescued-<UTC time>.wal".
 
 #include <filesystem>
 #include <string>

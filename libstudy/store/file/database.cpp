@@ -138,7 +138,7 @@ bool was_empty_before(const fs::path& journal) {
          salvaging::u32(head, 16) == 0;
 }
 
-/// base::Error unless the file is a database of vip-study whose schema is not newer than the program. With
+/// base::Error unless the file is a database of vip-study whose schema is not newer than `newest`. With
 /// Open::Create, an empty database is accepted too.
 void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
@@ -177,8 +177,8 @@ void recognise_header(Connection& database, Open how, std::size_t newest) {
   if (head.size() == salvaging::header_bytes && head.starts_with(salvaging::database_magic)) {
     found.application = salvaging::u32(head, salvaging::application_at);
     found.version = salvaging::u32(head, salvaging::version_at);
-    // SQLite checks later that a file without a journal has no tables. With a journal, that check would roll
-    // the journal back and so change the file: such a file is not accepted as empty.
+    // identify() later checks whether a file without a journal has tables. With a journal, identify() would
+    // roll the journal back and so change the file, so such a file is not accepted as empty.
     found.empty = !has_bytes(journal);
   }
   if (how == Open::Create && was_empty_before(journal)) return;
@@ -207,13 +207,13 @@ void back_up(Connection& database, std::int64_t version) {
   }
 }
 
-/// Sets the schema cookie to a random number, unless it has one. The number identifies the database, also in
-/// its log (foreign_log.hpp).
+/// Sets the schema cookie to a random number >= first_identity, unless it is that large already. The cookie
+/// identifies the database, also in its log (foreign_log.hpp).
 void give_identity(Connection& database) {
   if (database.integer("PRAGMA schema_version") >= first_identity) return;
   std::mt19937 chance{std::random_device()()};
   const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
-  // SQLITE_DBCONFIG_DEFENSIVE forbids to set the number.
+  // While SQLITE_DBCONFIG_DEFENSIVE is on, SQLite ignores this pragma.
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);
   database.execute("PRAGMA schema_version = " + std::to_string(number));
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -335,8 +335,8 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());
-  // Keeps the log unchanged: a reader changes no file, and a writer first compares the database with the
-  // journal of answers (AnswerJournal).
+  // Lets SQLite copy no page of an existing log into the file: a reader changes no file, and a writer first
+  // compares the database with the journal of answers (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
   database->distrust();
   if (how == Open::Read && !database->can_read()) {

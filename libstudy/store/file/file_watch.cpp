@@ -12,8 +12,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Offsets in the log's shared memory of the fields that record how much of the log was copied into the file
-// (sqlite.org/walformat.html, section 2.2).
+// Offsets of fields in the log's shared memory (sqlite.org/walformat.html, section 2): the log's two salts,
+// which change when SQLite restarts the log; the number of log frames copied into the file; and the number of
+// frames whose copying has begun.
 constexpr int salt_at = 32, copied_at = 96, being_copied_at = 128;
 constexpr int shared_region_bytes = 32768, copy_lock = 1;
 
@@ -35,7 +36,7 @@ bool keeps_a_log(sqlite3* database) {
 }
 
 /// The log's shared memory, which the connection has already mapped; null if the database has no log. Without
-/// a log, this call would make SQLite open the shared memory and never close it.
+/// a log, xShmMap() would make SQLite open the shared memory and never close it.
 const volatile char* shared_memory(sqlite3* database) {
   sqlite3_file* file = main_file(database);
   if (!file || !keeps_a_log(database)) return nullptr;

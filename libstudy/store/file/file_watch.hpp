@@ -17,7 +17,8 @@ class FileWatch {
   FileWatch(std::filesystem::path path, sqlite3* database);
 
   /// Returns in words how another program changed the file or removed its log since the watch began, e.g.
-  /// "was deleted or moved away while it was in use"; empty if no program did so.
+  /// "was deleted or moved away while it was in use"; empty if no program did so. While another program
+  /// copies the log into the file, returns an empty text; a later call then reports an overwritten file.
   std::string trouble();
   /// Moves the log to `kept`, or deletes the log if `kept` is empty, and deletes the log's shared memory. So
   /// SQLite does not copy the log into another file at the same path. Leaves a log or shared memory that
@@ -30,7 +31,8 @@ class FileWatch {
     std::uint64_t device = 0, number = 0;
     bool operator==(const Id&) const = default;
   };
-  /// Size and modification time of the database file, and how much of its log was copied into it.
+  /// Size and modification time of the database file, the salts of its log, and the number of log frames that
+  /// were copied into the file.
   struct Look {
     std::int64_t bytes = 0, written_ns = 0;
     std::uint32_t salt[2] = {}, copied = 0, being_copied = 0;

@@ -29,8 +29,9 @@ constexpr std::uint32_t first_marked_version = 7;
 /// Schema cookies that differ by less than this number belong to the same database. A cookie increases by one
 /// with each change of the schema and each VACUUM.
 constexpr std::int64_t most_changes = 10'000;
-/// Largest accepted number of commits in a log that does not contain the first page. Commits of single
-/// statements and of other programs write the first page only if the numbers of pages recorded on it change.
+/// Largest accepted number of commits in a log that does not contain the first page. A commit outside a
+/// Transaction, or of another program, writes the first page only if the number of pages or of free pages
+/// changes.
 constexpr std::size_t most_unmarked = 8;
 constexpr int tries = 5;
 constexpr std::chrono::milliseconds between_tries{20};

@@ -2,11 +2,12 @@
 /// Checks that SQLite's log "<database>-wal" and rollback journal "<database>-journal" belong to the database
 /// beside them. SQLite itself applies any valid log or journal, even of another database.
 ///
-/// The first page of a vip-study database identifies it, and each commit writes this page. The page contains
-/// the schema cookie, a random number (>= first_identity) chosen when the database was made or upgraded, and
-/// a change counter. The cookies of log and file may differ by less than 10,000, because each schema change
-/// and each VACUUM increases the cookie by one. The log's change counter must continue the file's. The
-/// format: https://www.sqlite.org/fileformat2.html
+/// The first page of a vip-study database identifies it, and each Transaction that changes rows writes this
+/// page (Connection::mark_commits()). The page contains the schema cookie and a change counter. The cookie is
+/// a random number >= first_identity, chosen when the database was made or upgraded. The cookies of log and
+/// file may differ by less than 10,000, because each schema change and each VACUUM increases the cookie by
+/// one. The first change counter in the log must exceed that of the file by at most one; the last must not be
+/// below it. The format: https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
 #include <cstdint>

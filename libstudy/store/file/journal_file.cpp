@@ -304,7 +304,8 @@ void replace_journal(const fs::path& path, const std::string& text) {
   // Exchanges the two files' names. After a power cut, `path` is either the old or the new journal, complete.
   if (base::rename_durably(draft, path, fs::exists(fs::symlink_status(path)) ? RENAME_EXCHANGE : 0))
     return remove_journal_draft(path);
-  // Network file systems cannot exchange two names: rename the new journal over the old one instead.
+  // Some file systems, such as network file systems, cannot exchange two names (EINVAL): rename the new
+  // journal over the old one instead.
   const int reason = errno;
   const base::Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (reason != EINVAL) fail(path, "cannot be replaced", reason);

@@ -18,12 +18,12 @@ using JournalRows = std::map<std::pair<const journal::Table*, std::string>, jour
 /// The content of a journal.
 struct JournalContent {
   bool exists = false;
-  std::int64_t schema = 0;             ///< schema version of the database when the journal was begun
-  JournalRows kept;                    ///< last version of each row that is marked as kept (committed)
-  JournalRows pending;                 ///< rows of the last batch if it is ready but not marked as kept
-  bool torn = false;                   ///< the last batch has unreadable lines: it was never complete
-  bool rewriting = false;              ///< a rewrite is announced, and no batch follows
-  std::vector<std::string> forgotten;  ///< persons whose withdrawal caused the announced rewrite
+  std::int64_t schema = 0;  ///< schema version of the database when the journal was begun
+  JournalRows kept;         ///< last version of each row that is marked as kept (committed)
+  JournalRows pending;      ///< rows of the last batch if it is ready but not marked as kept
+  bool torn = false;        ///< the last batch has unreadable lines, so it was not written completely
+  bool rewriting = false;   ///< a rewrite is announced, and no batch follows
+  std::vector<std::string> forgotten;  ///< persons whose withdrawal caused an announced rewrite
   std::int64_t last_number = 0;        ///< largest batch number n in a line {"ready": n}
   std::uintmax_t end = 0;              ///< bytes up to the end of the last mark, e.g. {"kept": n}
   std::int64_t unreadable = 0;         ///< number of lines before `end` that are not journal lines
@@ -54,7 +54,7 @@ class JournalFile {
 
   const std::filesystem::path& path() const { return path_; }
   /// Appends `text`; a missing or empty file gets the line `head` first. `to_disk` true: flushes the file to
-  /// disk. base::Error, with the file unchanged, if that fails.
+  /// disk. base::Error if writing or flushing fails; the appended bytes are then removed again.
   void append(const std::string& text, const std::string& head, bool to_disk);
   /// Truncates the file to `end` bytes.
   void cut(std::uintmax_t end);

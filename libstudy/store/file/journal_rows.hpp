@@ -22,7 +22,7 @@ struct Table {
 };
 
 /// All tables that the journal records, parents first. It omits frames, headset slots, head poses, gaze, gaze
-/// validations, exports and chores. Only a withdrawal deletes rows of the recorded tables.
+/// validations, exports and chores. Only a withdrawal or a merge deletes rows of the recorded tables.
 std::span<const Table> tables();
 /// Returns the recorded table with this name, or null if the journal does not record the table.
 const Table* find_table(const std::string& name);
@@ -38,8 +38,8 @@ struct Row {
 
 /// Calls `take` for each row of a table in the database, ordered by key.
 void each_row(sqlite::Connection& database, const Table& table, const std::function<void(Row)>& take);
-/// Calls `take` for the rows with these row numbers; skips missing rows. For a table without row numbers,
-/// `row_ids` must be empty.
+/// Calls `take` for the rows with these row numbers (SQLite's rowid); skips missing rows. For a table WITHOUT
+/// ROWID, `row_ids` must be empty.
 void each_row(sqlite::Connection& database, const Table& table, std::span<const std::int64_t> row_ids,
               const std::function<void(Row)>& take);
 /// Calls `take` for each row of one protocol. `table`: question, ask or cell.
@@ -51,7 +51,7 @@ std::optional<Row> stands_as(sqlite::Connection& database, const Row& row);
 /// Deepest nesting of JSON in a journal line; a line with deeper JSON is not a journal line.
 inline constexpr int most_levels = 8;
 
-/// Parses a journal line; none if it is not a row of a recorded table.
+/// Parses a journal line; none if it is not a row of a recorded table with all key columns.
 std::optional<Row> read_row(const std::string& line);
 /// The value of a column as text; empty for NULL and for a missing column.
 std::string column(const Row& row, const std::string& name);

@@ -13,12 +13,11 @@
 
 namespace study::salvaging {
 
-/// The first bytes of a database and of a rollback journal, and offsets in a database's header (sections 1.3
-/// and 3 of the format).
+/// The first bytes of a database file (section 1.3 of the format) and of a rollback journal (section 3).
 inline constexpr std::string_view database_magic("SQLite format 3\0", 16);
 inline constexpr std::string_view rollback_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
 /// header_bytes: size of the database header, with which the first page begins. version_at and
-/// application_at: offsets of user_version and application_id.
+/// application_at: offsets of the fields user_version and application_id in the header.
 inline constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
 
 /// The bytes as an unsigned number, most significant byte first.
@@ -26,7 +25,8 @@ std::uint64_t big_endian(std::string_view bytes);
 /// The four bytes from offset `at` on as a number, most significant byte first; 0 if `bytes` ends before.
 std::uint32_t u32(std::string_view bytes, std::size_t at);
 
-/// A file for reading; a missing file reads as empty. base::Error if an existing file cannot be read.
+/// A file for reading; a missing file reads as empty. base::Error if an existing file cannot be opened, or if
+/// reading fails for another reason than a disk error (EIO).
 class File {
  public:
   explicit File(const std::filesystem::path& path);
@@ -52,7 +52,7 @@ class Log {
  public:
   explicit Log(const std::filesystem::path& path);
 
-  /// Size of a page; 0 if there is no log.
+  /// Size of a page, bytes; 0 if there is no log with a valid header.
   std::size_t page_bytes() const { return page_bytes_; }
   std::size_t page_count() const { return page_count_; }
   bool holds(std::size_t page) const { return places_.contains(page); }

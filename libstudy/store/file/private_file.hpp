@@ -1,7 +1,7 @@
 #pragma once
-/// Makes files with people's answers private: mode 0600 whatever the umask. make_private() works on the path
-/// and opens no descriptor: closing one would release the locks that this process has on the file through
-/// SQLite.
+/// Makes files with people's answers private: mode 0600 even if the umask permits more. make_private() works
+/// on the path and opens no descriptor: closing one would release the locks that this process has on the file
+/// through SQLite.
 
 #include <filesystem>
 
@@ -11,7 +11,8 @@ namespace study {
 /// base::Error if it cannot be made.
 bool create_private(const std::filesystem::path& path);
 
-/// Removes other users' access rights on a file, if the file exists. A file of another owner stays unchanged.
+/// Sets the mode of an existing file to 0600 if other users have any access right. The file of another owner
+/// stays unchanged, without an error.
 void make_private(const std::filesystem::path& path);
 
 }  // namespace study

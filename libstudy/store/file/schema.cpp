@@ -169,7 +169,7 @@ std::unique_ptr<Connection> without_foreign_parts(Connection& foreign, const Sch
   for (const auto& [key, object] : found) {
     if (!wanted.contains(key)) left_out.push_back(named(key));
   }
-  // Copies rows of tables only, so that no trigger of `foreign` runs.
+  // Reads only ordinary tables, so that no view, trigger or virtual table of `foreign` runs.
   for (const auto& [key, object] : wanted) {
     if (key.first != "table") continue;
     const auto there = found.find(key);

@@ -32,11 +32,11 @@ using Schema = std::map<std::pair<std::string, std::string>, SchemaObject>;
 /// compare as equal if only their comments differ.
 std::string without_comments(const std::string& sql);
 
-/// The schema of a database.
+/// The schema of a database. ForeignSchema if it lists an object twice, or more than 2000 objects.
 Schema schema_of(sqlite::Connection& database);
 
-/// Throws ForeignSchema with the first difference unless the database has exactly the schema of the first
-/// `version` of `steps`.
+/// Throws ForeignSchema with the first difference unless the database has exactly the schema that the first
+/// `version` steps make.
 void check_schema(sqlite::Connection& database, const SchemaSteps& steps, std::int64_t version);
 
 /// Columns of a table of the newest schema, in order.

@@ -37,9 +37,9 @@ std::string kernel_name(const std::string& path) {
   return fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev), file.st_ino);
 }
 
-/// The programs with a write lock on a SQLite database or its shared memory, e.g. "sqlitebrowser (process
-/// 4711)"; "another program" if /proc/locks lists none. Reads the list of all locks and does not open the
-/// database, because closing a descriptor of it would release SQLite's locks.
+/// The other programs with a write lock on a SQLite database or its shared memory, e.g. "sqlitebrowser
+/// (process 4711)"; "another program" if /proc/locks lists none. Reads the list of all locks and does not
+/// open the database, because closing a descriptor of it would release SQLite's locks.
 std::string lock_holder(const std::filesystem::path& database) {
   const std::string file = kernel_name(database.string()), shared = kernel_name(database.string() + "-shm");
   std::set<long> holders;
@@ -141,7 +141,7 @@ Connection::~Connection() {
 std::string Connection::header() {
   sqlite3_file* file = nullptr;
   check(sqlite3_file_control(handle_, "main", SQLITE_FCNTL_FILE_POINTER, &file));
-  // SQLite treats a file of one byte as empty.
+  // Takes the size from the file system, because SQLite's xFileSize() returns 0 for a file of one byte.
   std::string header(static_cast<std::size_t>(std::min<std::uintmax_t>(fs::file_size(path_), 100)), '\0');
   if (!header.empty()) check(file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0));
   return header;

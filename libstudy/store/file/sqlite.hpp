@@ -1,9 +1,9 @@
 #pragma once
-/// RAII wrappers for the parts of SQLite that the store uses. Every failure is a base::Error that names the
-/// database file.
+/// RAII wrappers for the parts of SQLite that the store uses. Each failure that SQLite reports becomes a
+/// base::Error that names the database file.
 ///
-/// While a connection is open, no other code in this process may open and close the file: closing it would
-/// release SQLite's locks on the file.
+/// While a connection is open, the process must open and close the database file only through SQLite: closing
+/// any other descriptor of the file would release the locks that SQLite has on it.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +37,8 @@ enum class Open {
 /// connection.
 struct Temporary {};
 
-/// How much work SQLite may do with an untrusted file: as much as reading a schema needs, or any amount.
+/// Limit on SQLite's work with an untrusted file. OfASchema: 10 million operations of its virtual machine,
+/// far more than reading the schema of vip-study takes. Any: no limit.
 enum class Work { OfASchema, Any };
 
 /// Called about once a second while a statement waits for a lock that another program has. `holder` names
@@ -70,34 +71,37 @@ class Connection {
   /// The first 100 bytes of the file, or fewer if the file is shorter. Called before any other function of
   /// the connection, it neither reads nor changes the file's log or journal.
   std::string header();
-  /// True if SQLite can read the file; false if reading needs files beside it that SQLite may not write.
+  /// False if reading needs files beside the database that SQLite may not write; true in all other cases,
+  /// even if the file is damaged.
   bool can_read();
   /// keep true: the write-ahead log stays beside the file, and none of its pages is copied into the file.
   /// Default: false.
   void keep_log(bool keep);
-  /// Treats the file as untrusted until recognise(): forbids changes, and runs no view or trigger of the
-  /// file. With Work::OfASchema, a statement that takes longer than reading a schema fails with a
-  /// base::Error.
+  /// Treats the file as untrusted until recognise(): forbids statements that change rows or the schema, and
+  /// runs no view or trigger of the file. With Work::OfASchema, statements fail with a base::Error once all
+  /// statements since this call together have exceeded the limit.
   void distrust(Work limit = Work::OfASchema);
   /// Ends distrust(). Call it once the file is known to have the schema of vip-study.
   void recognise();
-  /// From now on forbids creating, altering or dropping tables, views and triggers, and attaching other
-  /// files. Rows can still be changed.
+  /// From now on forbids creating, altering or dropping tables, indices, views and triggers of the file, and
+  /// attaching other files. Rows can still be changed, and temporary tables can still be made.
   void seal();
-  /// Makes each later commit that changes rows also write the page that identifies the database
+  /// Makes each later Transaction that changes rows also write the first page, which identifies the database
   /// (foreign_log.hpp).
   void mark_commits() { marked_ = true; }
   /// Limits the file to this many pages.
   void limit_pages(std::int64_t pages);
-  /// Waits for a lock as long as `waiting` returns true, instead of five seconds.
+  /// Waits for a lock as long as `waiting` returns true. Without `waiting` (the default), waits five seconds.
   void wait_with(Waiting waiting);
   /// Sets the end of error messages: what the user should do once the fault is fixed. Default: "give the
   /// command again".
   void go_on_with(const std::string& words) { go_on_ = words; }
-  /// Watches the file from now on, in WAL mode: each commit checks that no other program has deleted,
-  /// replaced or overwritten it. If one has, the connection saves its content as
-  /// "<file>.rescued-<UTC time>.db" and removes the log beside the path. This commit and all later ones throw
-  /// a base::Error, and nothing more is written to the file.
+  /// Watches a file in WAL mode from now on. Each commit, each failed statement and the destructor check
+  /// whether another program has deleted, replaced or overwritten the file or removed its log. If so, the
+  /// connection saves its content as "<file>.rescued-<UTC time>.db" and removes the log; if saving fails, it
+  /// renames the log to "<file>.rescued-<UTC time>.wal". The statement or commit then throws a base::Error
+  /// (the destructor prints it), each later Transaction throws it again, and nothing more is written to the
+  /// file.
   void watch();
   /// Ends watch(). Call it before leaving WAL mode: SQLite then removes the log, which watch() would report.
   void unwatch();
@@ -107,9 +111,10 @@ class Connection {
   /// base::Error unless all pages, rows and indices are valid. Reads the whole file.
   void check_integrity();
   /// Replaces the content of this database by the content of `other`, in one transaction. A database in WAL
-  /// mode cannot change its page size: if the sizes differ, `other` is rewritten, so it must be a temporary
-  /// database. `complete` is called once this database is locked against other writers, before the copy. It
-  /// may change `other`, and may read the old content through another connection.
+  /// mode cannot change its page size. If this database is in WAL mode and the page sizes differ, copy_from()
+  /// rewrites `other` with the page size of this database, so `other` must then be a temporary database.
+  /// copy_from() calls `complete` once this database is locked against other writers, before the copy.
+  /// `complete` may change `other`, and may read the old content through another connection.
   void copy_from(Connection& other, const std::function<void()>& complete = {});
   /// The first column of the query's first row; 0 (integer) or an empty text (text) if there is no row.
   std::int64_t integer(const std::string& sql);
@@ -149,7 +154,7 @@ class Connection {
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;  ///< set once watch() found the file changed: nothing more is written
+  std::optional<Lost> lost_;  ///< set once another program changed the file: nothing more is written
   /// locked by each Transaction; recursive, because a thread may begin a Transaction while its last
   /// Transaction, already committed, still exists
   std::recursive_mutex turn_;
@@ -160,7 +165,8 @@ struct Blob {
   std::string_view bytes;
 };
 
-/// A prepared statement: bind_all(), step(), reset(). Parameter and column indices count from 0.
+/// A prepared statement. To run it, call bind_all(), then step() until it returns false. Parameter and column
+/// indices count from 0.
 class Statement {
  public:
   Statement(Connection& connection, std::string_view sql);
@@ -197,10 +203,10 @@ class Statement {
     return value ? bind_at(index, *value) : bind_at(index, std::nullopt);
   }
 
-  /// Goes to the next row of the result. Returns true if there is one. After the last row the statement is
+  /// Fetches the next row of the result. Returns true if there is one. After the last row the statement is
   /// reset, but its bound values remain.
   bool step();
-  /// Runs a statement without rows and returns the new row's id.
+  /// Runs the statement to its end. Returns the row number of the connection's last INSERT.
   std::int64_t run();
   void reset();
 

@@ -1,6 +1,5 @@
 #pragma once
-/// The lock that makes a process the only writer of a database. Only the process with the lock may create and
-/// remove the file.
+/// The lock that excludes other vip-study processes from writing to a database.
 
 #include <filesystem>
 
@@ -13,10 +12,12 @@ namespace study {
 /// locks that SQLite has on the file in this process.
 class WriterLock {
  public:
-  /// Locks the file. Open::Create makes a missing file, empty and with mode 0600; it also accepts an empty
-  /// file. base::Error if another vip-study has the lock, or if the file cannot be opened for writing.
+  /// Locks the file. Open::Create first makes a missing file, empty and with mode 0600. base::Error if
+  /// another vip-study has the lock, if the file cannot be opened for writing, or, with Open::Create, if a
+  /// log without its database is at the path (refuse_orphaned_log()).
   explicit WriterLock(const std::filesystem::path& database, sqlite::Open how = sqlite::Open::Write);
-  /// Removes the file, and SQLite's files beside it, if made() is true.
+  /// Removes the file, and SQLite's files beside it, if made() is true and the locked file is still at the
+  /// path.
   ~WriterLock();
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
