@@ -80,8 +80,8 @@ void AnswerJournal::write() {
 }
 
 void AnswerJournal::kept() {
-  // Cleared only here: rows whose commit failed are written again with the next batch, because settle()
-  // commits only the last batch.
+  // Cleared only here and at a rollback. A Store on a temporary copy never calls kept(), so each of its
+  // batches has the rows of all its earlier batches too: settle() commits only the last batch of the journal.
   changed_.clear();
   if (waiting_) blank_ = false;
   unmarked_ = unmarked_ || anew_ || waiting_;

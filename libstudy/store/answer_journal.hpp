@@ -11,11 +11,11 @@
 ///
 /// Order of writing for each commit: append the rows and the line {"ready": n}, flushed to disk if the batch
 /// contains answers or other rows that must not be lost (journal::Table::answers); commit; append the line
-/// {"kept": n}. So every acknowledged row is in both files. If the last batch has "ready" but no "kept", the
-/// program ended during its commit. The next AnswerJournal commits this batch, so its answers are neither
-/// lost nor asked again. A truncated last line is ignored. If the database lacks a row marked as kept, the
-/// file at its path is not the database that was written: opening it for writing is then an error that names
-/// vip-study salvage.
+/// {"kept": n}. So every committed answer is on disk in both files. If the last batch has "ready" but no
+/// "kept", the program ended during its commit. The next AnswerJournal commits this batch, so its answers are
+/// neither lost nor asked again. A truncated last line is ignored. If the database lacks a row marked as
+/// kept, the file at its path is not the database that was written: opening it for writing is then an error
+/// that names vip-study salvage.
 ///
 /// For code that writes the database:
 /// - Store::commit() writes the journal too; every method of Store that changes rows must end with it.
@@ -60,7 +60,8 @@ class AnswerJournal {
   void require_written();
   /// Sets the receiver of one-line warnings about the journal; default: stderr.
   void tell_with(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
-  /// Removes the journal if the database never held a run and no batch was ever committed.
+  /// Removes the journal if the database had no run when this object was constructed and no batch was
+  /// committed since.
   void remove_if_blank() noexcept;
 
  private:

@@ -2,7 +2,7 @@
 /// Chores: clean-up work outside the database's rows, required by a withdrawal, a refusal of gaze or a merge.
 /// A chore is a row of the table `chore`, committed together with the change that requires it. The program
 /// does the chore afterwards and then deletes its row. A chore that a kill or a full disk left undone is done
-/// when the database is next opened for writing.
+/// by the next Store, withdrawal, merge or change of permissions.
 
 #include <filesystem>
 #include <map>
@@ -48,7 +48,8 @@ class ChorePlan {
   std::string batch_;
 };
 
-/// True if clean_up() has work: a chore, or an export on this computer with data of a withdrawn person.
+/// True if clean_up() has work: a chore, or an export on this computer, or on a computer that is not
+/// recorded, with data of a withdrawn person.
 bool is_anything_left(sqlite::Connection& database);
 
 /// Does all chores of a database that is open for writing under its WriterLock. Deletes the exports that

@@ -50,7 +50,8 @@ struct LabelledSession {
 
 /// The sessions allowed in a public export, by participant code, then in the order of planning. If a
 /// participant refused sharing in any session, or was asked and has not answered, all sessions of the
-/// participant are omitted. base::Error if a person or a protocol has no stored label (give_labels()).
+/// participant are omitted. Participants who were never asked are included. base::Error if a person or a
+/// protocol has no stored label (give_labels()).
 std::vector<LabelledSession> shared_sessions(sqlite::Connection& database);
 /// The persons (session.person) of these sessions.
 std::set<std::string> people_of(const std::vector<LabelledSession>& sessions);

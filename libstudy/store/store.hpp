@@ -106,7 +106,7 @@ enum class EarlyEnd {
   Refused,      ///< the participant did not consent
   NotEligible,  ///< the answers to the screening ruled the participant out
   Stopped,      ///< a stop rule, the participant or the experimenter ended the session
-  DroppedOut    ///< the participant left (Left); the slot is free again
+  DroppedOut    ///< the participant left (exception Left); the slot is free again
 };
 
 struct Ending {
@@ -162,7 +162,8 @@ class Store {
   /// Writes protocol, sessions and all their units and trials in one transaction; returns the run's id.
   /// base::Error if a participant already has this visit under this protocol, or withdrew. base::Error if a
   /// new code reads as a missing value, or differs from another code only in case, punctuation or leading
-  /// zeros. base::Error if the protocol's name and version are stored with another text.
+  /// zeros. base::Error if the protocol's name and version are stored with another text, unless one of the
+  /// two protocols is test data.
   std::int64_t add_run(const RunPlan& run);
 
   /// Stores the framing of scenes on the display of a resumed session, if it changed. Later presentations
@@ -194,7 +195,8 @@ class Store {
   /// Commits the cells that an adaptive procedure chose for a trial that is not done.
   void choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second);
   /// The answers of a session to a question of its stimulus block, in the order of the trials' positions.
-  /// Answers to trials that were excluded or set aside do not count.
+  /// Only answers to trials that are done count, and neither to excluded trials nor to showings that were set
+  /// aside.
   std::vector<TrackAnswer> track_answers(std::int64_t session, const std::string& question);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. interval: 0 for the first

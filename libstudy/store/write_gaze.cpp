@@ -14,7 +14,6 @@ using sqlite::Transaction;
 
 bool Store::allows_gaze(std::int64_t session) { return is_gaze_allowed(*database_, session); }
 
-/// Returns the session id of a presentation.
 std::int64_t Store::session_of(std::int64_t presentation) {
   Statement row(*database_,
                 "SELECT session_id FROM presentation JOIN trial USING (trial_id) WHERE presentation_id = ?");

@@ -21,14 +21,16 @@ constexpr const char* as_share = "1";
 struct Samples {
   Table rows;
   std::vector<std::int64_t> times_ns;
-  bool rays = false;  ///< true: x and y are angles relative to the head; false: positions on the picture
+  bool rays =
+      false;  ///< true: the coordinates are angles relative to the head; false: positions on the picture
 };
 
 const std::vector<std::string> screen_columns{"timestamp", "x_coordinate", "y_coordinate", "valid"};
 const std::vector<std::string> ray_columns{"timestamp", "x_coordinate", "y_coordinate", "valid",
                                            "tracked",   "picture_x",    "picture_y"};
 
-/// Azimuth and elevation of the direction in columns column ... column + 2, degrees; "n/a" if it is NULL.
+/// Azimuth and elevation of the direction whose x, y and z are in the columns column ... column + 2, degrees;
+/// "n/a" if x is NULL.
 std::pair<std::string, std::string> angles_of(const Statement& row, int column) {
   if (row.is_null(column)) return {"n/a", "n/a"};
   const double x = row.real(column), y = row.real(column + 1), z = row.real(column + 2);
@@ -101,7 +103,7 @@ Json ray_columns_meaning() {
 
 void write_eye(Connection& database, const Samples& samples, const LabelledSession& session, Writer& writer) {
   const double hz = rate_hz(database, session.id, samples.times_ns);
-  if (hz == 0) return;  // BIDS requires a sampling rate; the CSV export still has the samples
+  if (hz == 0) return;  // BIDS requires a sampling rate; the CSV export can still contain the samples
   const std::string name = stem_of(session) + "_recording-eye1_physio";
   writer.compressed_table(name + ".tsv.gz", samples.rows);
   Json json{{"PhysioType", "eyetrack"},
@@ -267,7 +269,7 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
   const double hz = rate_hz(database, session.id, times_ns);
-  if (hz == 0) return;  // writes nothing without a pose, or with one pose and an unknown refresh rate
+  if (hz == 0) return;  // fewer than two distinct times, and the refresh rate is not known
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";
   writer.bare_table(stem + "_motion.tsv", rows);
   writer.json(stem + "_motion.json", motion_json(session, hz));

@@ -32,8 +32,8 @@ Page page_of(const LabelledSession& session, const std::string& block, int time 
   return page;
 }
 
-/// A table with all pages of one questionnaire: one line per participant, and columns for each page that at
-/// least one participant answered.
+/// A table with all pages of one questionnaire: one line per participant, and columns for each page that is
+/// done in at least one session.
 class Questionnaire {
  public:
   /// Adds the answers of a participant on one page. `asked` and `answers` have the same order.

@@ -143,7 +143,7 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
   const auto factors = factor_events(database, session, columns);
   for (const FactorEvent& one : factors) columns[one.name] = one.meaning;
   for (Item& item : asked) {
-    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // until the name is unique
+    while (columns.contains(item.code)) item.code = "answer_" + item.code;
     columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }

@@ -32,7 +32,7 @@ inline constexpr const char* description_file = "dataset_description.json";
 
 /// Texts for the description of a public data set.
 struct AboutDataSet {
-  std::string name;       ///< names and versions of the study's protocols: "comfort 1.0, task1 1.1"
+  std::string name;       ///< names and versions of the protocols: "comfort 1.0, task1 1.1"
   std::string simulated;  ///< sentence with the number of simulated participants; empty: there are none
 };
 AboutDataSet about_data_set(sqlite::Connection& database, std::span<const LabelledSession> sessions);

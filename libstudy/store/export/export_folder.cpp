@@ -104,7 +104,8 @@ void ExportDraft::put_in_place() {
   base::sync_folders(path_);
   record_->will_be(base::sha256_hex(list));
   replace_target();
-  // The earlier export now has the draft's path. Deletes it durably, because it may contain other people.
+  // If there was an earlier export, it now has the draft's path. Deletes it durably, because it may contain
+  // people who are not in the new export.
   base::remove_durably(path_);
   record_->is_in_place();
 }
@@ -114,7 +115,8 @@ void ExportDraft::replace_target() {
   std::error_code ignored;
   const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
   if (base::rename_durably(path_, target_, flags)) return;
-  // Network file systems cannot exchange two paths: rename the earlier export first, then the draft.
+  // Some file systems, such as network file systems, cannot exchange two paths (EINVAL): rename the earlier
+  // export first, then the draft.
   if (errno != EINVAL || !replace_in_two_steps()) fail("cannot be put in place");
 }
 

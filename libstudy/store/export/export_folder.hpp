@@ -79,7 +79,7 @@ class ExportDraft {
   Readers readers() const { return readers_; }
   const CsvDialect& dialect() const { return dialect_; }
   /// Adds the list of files (own_exports.hpp) and renames the draft to the target, replacing an earlier
-  /// export. Returns once the rename is on disk. base::Error, with the target deleted, if a person in the
+  /// export. Returns once the rename is on disk. base::Error, with the new export deleted, if a person in the
   /// export withdrew in the meantime.
   void put_in_place();
 
@@ -128,7 +128,7 @@ extern const char* const formula_guard_meaning;
 std::string csv_field(const std::string& text, const CsvDialect& dialect = {});
 /// The shortest text that parses to the same number.
 std::string number_text(double value);
-/// A number as text with the dialect's decimal mark; `text` has a decimal point.
+/// A number as text with the dialect's decimal mark instead of the decimal point of `text`.
 std::string csv_number(std::string text, const CsvDialect& dialect);
 /// A column of a result row as a CSV field: a text as csv_field(), a number as csv_number(), NULL as empty.
 std::string csv_value(const sqlite::Statement& row, int column, const CsvDialect& dialect = {});

@@ -84,7 +84,8 @@ Json variables(Connection& database, const std::vector<LabelledSession>& session
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const SicknessTable& table : sickness_tables(scored)) {
-    if (table.rows.empty()) continue;  // the table has no file, and Psych-DS forbids variables without a file
+    if (table.rows.empty())
+      continue;  // the table has no file, so its columns are no variables of the data set
     for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
   }
   Json list = Json::array();

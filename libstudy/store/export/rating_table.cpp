@@ -142,8 +142,8 @@ void add_factor_columns(const std::vector<FactorColumn>& factors, const std::str
 }  // namespace
 
 std::string FactorColumn::level_sql(const std::string& cell) const {
-  // The column has one line "factor = level" for each factor. A line begins at the text's start or after a
-  // line end (char(10)).
+  // The column `levels` has one line "factor = level" for each factor. A line begins at the text's start or
+  // after a line end (char(10)).
   const std::string lines = "(char(10) || " + cell + ".levels || char(10))";
   const std::string key = "(char(10) || " + sql_text(factor + " = ") + ")";
   const std::string rest = "substr(" + lines + ", instr(" + lines + ", " + key + ") + length(" + key + "))";

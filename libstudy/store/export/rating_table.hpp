@@ -23,8 +23,8 @@ struct RatingColumn {
 
 /// A factor of a protocol of format 3, as a column of an export.
 struct FactorColumn {
-  /// Name of the column: the letters, digits and '_' of the factor's name, followed by "_level" if another
-  /// column has this name.
+  /// Name of the column: the letters, digits and '_' of the factor's name ("factor" if it has none), followed
+  /// by "_level" while another column has this name.
   std::string name;
   std::string factor;  ///< name in the database
   std::string meaning;
@@ -42,14 +42,14 @@ std::vector<FactorColumn> factor_columns(sqlite::Connection& database, const std
 /// the columns of their levels, the timing profile, p99_ms, hitches and animation_error_ms.
 std::vector<RatingColumn> rating_columns(sqlite::Connection& database, const std::string& condition = "1");
 
-/// Meanings of a showing's columns `counts` and `why_not`, as every export describes them.
+/// Meanings of a showing's columns `counts` and `why_not` in the descriptions of exports.
 inline constexpr const char* showing_counts_meaning =
     "1: an answer that counts is about this showing, 0: why_not says why none is";
 inline constexpr const char* showing_why_not_meaning =
     "set aside (to be shown again), cut short, shown again (after an interruption), not answered, excluded "
     "(by "
     "the experimenter) or practice; empty: the showing counts";
-/// Meanings of a showing's columns `active_fraction` and `tau_fps`, as every export describes them.
+/// Meanings of a showing's columns `active_fraction` and `tau_fps` in the descriptions of exports.
 inline constexpr const char* showing_active_meaning =
     "share of particles that the solver solved, mean over the frames; empty: not measured, or a method that "
     "solves all";

@@ -46,8 +46,8 @@ std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& p
 /// journal beside it makes it empty again. Open::Create overwrites such a file.
 bool holds_nothing(const std::filesystem::path& path);
 
-/// Upgrades a database to the newest schema of `steps`, each step in one transaction. An empty database gets
-/// this program's newest schema directly, without the steps.
+/// Upgrades a database to the newest schema of `steps`, each step in one transaction. If `steps` are all
+/// steps of this program, an empty database gets the newest schema directly.
 void upgrade(sqlite::Connection& database, const SchemaSteps& steps);
 
 /// Makes an empty temporary database of the newest schema in `steps`. Error messages name `shown` as its

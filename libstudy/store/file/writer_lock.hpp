@@ -1,5 +1,6 @@
 #pragma once
-/// The lock that excludes other vip-study processes from writing to a database.
+/// The lock of the one vip-study process that may write a database. Only the short writes that register an
+/// export work without it (export_register.hpp).
 
 #include <filesystem>
 

@@ -11,7 +11,8 @@
 
 namespace study {
 
-/// How evenly the sessions of one protocol use the assignment. The sessions of Store::taken_slots() count.
+/// How evenly the sessions of one protocol use the assignment. A session counts if its state is open, done or
+/// stopped and its mark as test data equals that of the protocol, as in Store::taken_slots().
 struct Balance {
   std::string name, version;
   int sessions = 0;  ///< number of sessions that count
@@ -33,7 +34,7 @@ struct Merge {
   std::int64_t sessions = 0;       ///< number of sessions in the merged database
   std::int64_t recognised = 0;     ///< number of further copies of these sessions, which were omitted
   std::int64_t test_sessions = 0;  ///< how many of `sessions` are marked as test data
-  /// New codes of people whose code several people had: "P07 of station north is P07-north".
+  /// New codes of people whose code several people had: "P07 of station 'north' is P07-north".
   std::vector<std::string> renamed;
   /// Codes of all people who withdrew; none of their data are in the result.
   std::vector<std::string> withdrawn;
@@ -63,6 +64,7 @@ struct Merge {
 ///
 /// base::Error, with nothing changed, if a source has a row whose parent is missing, or a row that refers to
 /// a row of another session. Unless `incomplete`, also if a source lacks rows of its journal of answers.
+/// `into` must never lack such rows.
 Merge merge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& into,
             bool incomplete = false);
 

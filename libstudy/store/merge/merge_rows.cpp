@@ -105,7 +105,8 @@ void sort_labels(std::vector<GivenLabel>& labels, const Content& content) {
 }
 
 /// Stores the labels of the merged database (export_labels.hpp). The labels of the source at the target's
-/// path stay unchanged. The other sources' labels are added in the order of sort_labels().
+/// path stay unchanged. The other sources' labels are added in the order of sort_labels(). Labels of people
+/// who withdrew are omitted.
 void add_labels(const Content& content, sqlite::Connection& target) {
   const auto into = std::filesystem::weakly_canonical(target.path());
   std::vector<GivenLabel> first, others;

@@ -253,8 +253,8 @@ std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& p
   return all;
 }
 
-/// True if `a` and `b` each have a session that the other lacks. Otherwise one of them is an earlier copy of
-/// the other.
+/// True if `a` and `b` each have a session that the other lacks. Otherwise one of them may be an earlier copy
+/// of the other.
 bool went_apart(const Dealt& a, const Dealt& b) {
   const auto holds = [](const Dealt& one, const Dealt& other) {
     return std::includes(one.sessions.begin(), one.sessions.end(), other.sessions.begin(),

@@ -50,8 +50,8 @@ struct SicknessSession {
   const SsqPage* ssq_after() const;
 };
 
-/// Every session with an answer to SSQ or FMS, by protocol, participant and visit. base::Error for an answer
-/// outside its scale or to an unknown SSQ item.
+/// Every session with an answer to the SSQ, also an empty one, or a score on the FMS; by protocol,
+/// participant and visit. base::Error for an answer outside its scale or to an unknown SSQ item.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
 /// base::Error as read_tasks().
 std::vector<SicknessSession> read_sickness(const StudyFile& study);

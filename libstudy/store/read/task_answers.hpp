@@ -53,8 +53,9 @@ struct TaskTrial {
   TaskShowing first;  ///< first or only stimulus
   std::optional<TaskShowing> second;
   std::optional<std::string> excluded;  ///< the experimenter's reason, or interrupted_reason
-  std::vector<TaskAnswer> answers;      ///< in the order of the questions, without text questions
-  /// If kind is "repeat": position of the stimulus trial with the same stimuli in the same order.
+  std::vector<TaskAnswer> answers;  ///< in the order of the questions, without text and personal questions
+  /// If kind is "repeat": position of the first earlier stimulus trial with the same stimuli in the same
+  /// order; none if there is no such trial.
   std::optional<int> repeats;
 };
 

@@ -46,8 +46,9 @@ class Cursor {
   std::size_t at_;
 };
 
-/// Limit on the number of overflow pages that are read. In a sound file each overflow page belongs to one
-/// row, but in a forged file every cell could point to all of them. Rows beyond the limit are omitted.
+/// Limit on the number of overflow pages that are read: 16 times the number of pages in the file. In a sound
+/// file each overflow page belongs to one row, but in a forged file every cell could point to all of them.
+/// Rows beyond the limit are omitted.
 class Allowance {
  public:
   explicit Allowance(std::size_t pages) : left_(most_readings * pages) {}
@@ -143,7 +144,7 @@ bool fits(const Shape& shape, const Values& values) {
   return true;
 }
 
-/// Calls `take` for each row on one page; does nothing if the page has no rows.
+/// Calls `take` for each row on one page that fits a shape; does nothing if the page has no rows.
 void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes, Allowance& allowance,
                const std::function<void(const Shape&, Values)>& take) {
   const std::string page = pages.read(number);

@@ -84,8 +84,7 @@ std::vector<Shape> shapes_before() {
 }
 
 /// The earlier shapes, from schema 2 on, that differ from the tables' current shapes `now`. A column is
-/// copied if its name, type and NOT NULL are unchanged. A current column that the earlier shape lacks becomes
-/// NULL.
+/// copied if its name, type and NOT NULL are unchanged. Every other current column becomes NULL.
 std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
   static const std::vector<Shape> before = shapes_before();
   std::vector<EarlierShape> out;
@@ -154,8 +153,9 @@ std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
   return std::make_unique<WriterLock>(database);
 }
 
-/// The parts that vip-study knows of a copied database that has foreign parts too, upgraded to the newest
-/// schema. left_out: descriptions of the other parts.
+/// Reads a copy of a database that has tables, columns, views or triggers that are not from vip-study.
+/// Returns a temporary database with the other parts only, upgraded to the newest schema. Adds descriptions
+/// of the omitted parts to `left_out`.
 std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
                                                        std::vector<std::string>& left_out) {
   Connection foreign(copied, Open::Write);
@@ -166,7 +166,8 @@ std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
   return own;
 }
 
-/// Copies the database to `copied` and opens the copy with SQLite; null if it is damaged or not a database.
+/// Copies the database to `copied` and opens the copy with SQLite; null if SQLite cannot open it, if it is
+/// damaged, or if a row refers to a missing row.
 std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied, bool use_log,
                                        std::vector<std::string>& left_out) {
   for (const std::string beside : {"", "-wal", "-journal"})

@@ -22,10 +22,11 @@ struct Salvage {
   std::int64_t unreadable = 0;         ///< number of unreadable lines in the journal
   /// Answers that differ between database and journal; the new database has the database's version.
   std::vector<std::string> different;
-  /// Number of missing answers to questions of units that are done, by participant.
+  /// Number of missing answers to questions of units that are done, by participant. Personal questions and
+  /// excluded trials do not count.
   std::map<std::string, std::int64_t> answers_lost;
-  /// Number of rows omitted because their parent row was not found, by table; not counted if a person
-  /// withdrew.
+  /// Number of omitted rows by table: the row's parent row was not found, or a row of the journal violates
+  /// the schema. Not counted if a person withdrew.
   std::map<std::string, std::int64_t> rows_lost;
   /// Parts of the database that are not from vip-study: tables, views, triggers and columns, and a log of
   /// another database.
@@ -36,8 +37,8 @@ struct Salvage {
 /// Writes the new database `into` completely or not at all, with the newest schema, mode 0600 and a journal
 /// of answers. `database` may be damaged, truncated, empty or missing; the file, its log and its journal stay
 /// unchanged. An answer comes from the database, or from the journal if the database lacks it. base::Error if
-/// `into` exists, if another vip-study writes `database`, if no data were found, or if the journal belongs to
-/// another study.
+/// `into`, its journal or its log exists, if another vip-study writes `database`, if no data were found, or
+/// if the journal belongs to another study.
 Salvage salvage(const std::filesystem::path& database, const std::filesystem::path& into);
 
 }  // namespace study

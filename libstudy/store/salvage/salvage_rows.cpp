@@ -61,7 +61,7 @@ void fuller_first(std::vector<Values>& rows) {
                    [&](const Values& a, const Values& b) { return empty(a) < empty(b); });
 }
 
-/// The column that identifies a row across copies of the database.
+/// The column that identifies a row of the table across copies of the database; nullptr if there is none.
 const char* identity_of(const Table& table) {
   const std::string name = table.name;
   if (name == "protocol") return "sha256";
@@ -310,8 +310,8 @@ void add_units(Connection& database, std::int64_t session, std::int64_t first,
 
 }  // namespace
 
-// Inserts the lost trials, or the lost units if `units` is true. If no row of a session's plan is left,
-// inserts none: the row numbers, to which answers refer, are then unknown.
+// Inserts the lost trials, or the lost units if `units` is true. If no such row of a session is left, inserts
+// none for the session: the row numbers, to which answers refer, are then unknown.
 void Rebuild::complete_plans(bool units) {
   for (const Planned& session : sessions_of(target_)) {
     const auto first = first_row(target_, units ? "unit" : "trial", session.session);
@@ -328,7 +328,7 @@ void Rebuild::complete_plans(bool units) {
       else if (plan)
         add_trials(target_, session.session, *first, *plan);
     } catch (const base::Error&) {
-      // This program cannot read the protocol's old format, so the lost rows stay lost.
+      // The protocol may have an old format that this program cannot read: the lost rows then stay lost.
     }
   }
 }

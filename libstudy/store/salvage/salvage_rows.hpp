@@ -14,8 +14,8 @@ namespace study::salvaging {
 
 using RowsByTable = std::map<std::string, std::vector<Values>>;
 
-/// True for frame, slot, head, gaze and gaze_validation. These tables are not in the journal; most have
-/// thousands of rows per trial, so their rows are copied one by one instead of being loaded into memory.
+/// True for frame, slot, head, gaze and gaze_validation. These tables are not in the journal; most have many
+/// rows per presentation, so their rows are copied one by one instead of being loaded into memory.
 bool is_large(const std::string& table);
 
 /// Fills an empty database of the newest schema table by table, parents first. For each table, inserts the
@@ -29,7 +29,8 @@ class Rebuild {
   void take(RowsByTable rows);
   /// Inserts a row of a large table; omits and counts a row whose parent row is missing.
   void take_large(const Shape& shape, const Values& values);
-  /// Counts the rows in the result, and the answers and frames that are missing in it.
+  /// Counts the sessions and frames in the result, and the answers and frames that are missing in it. Lists
+  /// the people who withdrew.
   void sum_up();
 
  private:
