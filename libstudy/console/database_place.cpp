@@ -19,7 +19,7 @@ struct NetworkKind {
   std::uint32_t number;
   const char* name;
 };
-// Numbers of statfs's f_type. Sources: linux/magic.h and the file systems of the Linux kernel.
+// Numbers of statfs's f_type. Sources: linux/magic.h and the source code of the file systems.
 constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0x517B, "SMB"},
                                    NetworkKind{0xFF534D42, "SMB/CIFS"},

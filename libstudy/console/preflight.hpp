@@ -41,7 +41,7 @@ StationFacts read_station(const std::filesystem::path& database);
 std::vector<PreflightLine> judge_preflight(const std::optional<ScreenFacts>& screen,
                                            const StationFacts& station, std::uint64_t needed_bytes);
 
-/// Text with one row per line, such as "ok       refresh rate: 60 Hz".
+/// Text with one row per line, such as "ok       compositor: none".
 std::string format_preflight(const std::vector<PreflightLine>& lines);
 
 }  // namespace study

@@ -19,7 +19,8 @@ double expected_s(const Protocol& protocol, const OpenUnit& unit, bool person = 
 double expected_s(const Protocol& protocol, std::span<const OpenUnit> units, bool person = true,
                   std::span<const double> showing_s = {});
 
-/// Estimate of the bytes that the units add to a database: 64 bytes per frame and 4 KiB per unit.
+/// Estimate of the bytes that the units add to a database: 64 bytes per frame and 4 KiB per unit. A stimulus
+/// without a schedule counts as 60 frames/s.
 std::uint64_t expected_bytes(const Protocol& protocol, std::span<const OpenUnit> units);
 
 }  // namespace study

@@ -19,7 +19,8 @@ struct MeasuredRefresh {
 /// Derives the refresh from the return times of successive swaps, each followed by glFinish(). reported_hz:
 /// rate reported by the system; 0: none. nominal_hz comes from study::nominal_refresh(), such as 60 for a
 /// measured rate of 59.95 Hz. in_effect is false for fewer than 20 swaps, for a median step outside 2 to 50
-/// ms, and if more than a tenth of the steps are no multiple of the median step.
+/// ms, and if more than a tenth of the steps differ by a tenth of the median step or more from each multiple
+/// of it.
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double reported_hz);
 
 /// The time at which the screen took over the picture of the last swap (its beat). A swap returns at its beat

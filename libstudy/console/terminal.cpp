@@ -96,7 +96,7 @@ void ConsoleTerminal::draw() {
   ConsoleView view = console_.view(now_ns);
   view.said = said_;
   auto lines = render_console(view, columns_, rows_);
-  for (std::string& line : lines) line = base::for_terminal(line);  // text from people and protocols
+  for (std::string& line : lines) line = base::for_terminal(line);  // replaces control characters
   drawn_.resize(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i] != drawn_[i]) out += "\033[" + std::to_string(i + 1) + ";1H" + lines[i] + "\033[K";

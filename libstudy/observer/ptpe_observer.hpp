@@ -24,7 +24,7 @@ namespace study {
 /// participant_sd are our choice.
 struct PtpeObserverParameters {
   double a = 0;                 ///< frames/s, > 0; must be given
-  double b = 0;                 ///< s/frame; must be given
+  double b = 0;                 ///< s/frame, -1 to 1; must be given
   double slope = 0.14;          ///< scores per frame/s, > 0
   double noise = 1.0;           ///< standard deviation per trial, scores, >= 0
   double participant_sd = 0.5;  ///< standard deviation over participants, scores, >= 0

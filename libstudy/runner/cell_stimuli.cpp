@@ -77,7 +77,8 @@ void CellStimuli::check_settings_live(const Protocol& protocol) const {
 }
 
 /// Describes the stimuli of all cells: first the bakes, then the live fluid with its solver settings. Without
-/// bakes and live fluid, returns the description of the empty stimulus.
+/// bakes and live fluid, returns the description of the empty stimulus. With bakes alone, mentions painted
+/// temperatures at the end.
 std::string CellStimuli::describe(const Protocol& protocol) {
   const bool live = shown_ && !bakes_.whole();
   const std::string bakes = bakes_.description();

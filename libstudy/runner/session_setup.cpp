@@ -100,7 +100,7 @@ void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionS
   viewing.ray = [recorder] { return recorder->ray(); };
 }
 
-/// Sets up the headset as display. The frame slots of the headset drive the clock.
+/// Sets up the headset as display, with its own clock (HeadsetClock).
 void take_headset(const RunOptions& options, const Protocol& protocol, SessionSetup& setup,
                   Viewing& viewing) {
   const bool person = options.observer.empty();
@@ -138,7 +138,7 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
 }
 
 /// Picture features for the frames observer: measured on live pictures before the session, or taken from the
-/// table if the session shows no live pictures.
+/// table with --display none or with bakes. Other observers get the table, which they do not read.
 std::unique_ptr<FeatureSource> make_features(const RunOptions& options, const Protocol& protocol,
                                              const CellStimuli& stimuli) {
   const bool looks = options.observer.find("frames") != std::string::npos;

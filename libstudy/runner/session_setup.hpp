@@ -39,7 +39,7 @@ struct SessionSetup {
   std::optional<ScreenFacts> screen;  ///< facts of the window's screen; none: no window
   std::vector<FramedScene> scenes;    ///< the scenes on the display; empty for --display openxr and none
   std::vector<std::string> warnings;  ///< warnings about clock and database (warn_of_station())
-  MeasuredReport rates;               ///< measured rates of live cells; none: nothing was measured
+  MeasuredReport rates;               ///< measured rates of live cells; no cells: nothing was measured
 
   /// Differences between the bakes and what protocol and display require; empty: none. If there are
   /// differences, the session's data are marked as test data.

@@ -1,6 +1,6 @@
 #pragma once
 /// Buffers the frames, the gaze samples and the headset's frame slots of a running trial, so that the
-/// session's thread never waits for the disk between two frames.
+/// session's thread need not write them to the disk between two frames.
 
 #include <atomic>
 #include <condition_variable>
@@ -32,8 +32,8 @@ struct JournalPlace {
 };
 
 /// Writes the frames, gaze and slots of one presentation to the store. With in_background, a thread commits
-/// the buffered records every half second, so that a killed program loses at most half a second; only this
-/// thread uses the store until finish(). Without in_background, all records stay in memory until finish().
+/// the buffered records every half second, so that a killed program loses about half a second of records.
+/// Without in_background, all records stay in memory until finish().
 class FrameJournal {
  public:
   /// origin: source of the gaze samples passed to add().

@@ -73,7 +73,8 @@ enum class Offer {
   Keep            ///< may the data be kept? no: they are deleted
 };
 
-/// Function that is called often while the session waits for a person. It throws Stopped to end the session.
+/// Function that is called often while the session waits for a person. It throws to end the wait: Stopped to
+/// end the program, Ending to end the session, TrialAgain (running.hpp) to cut the trial.
 using Check = std::function<void()>;
 
 /// Thrown if the participant leaves for good: the session ends (EarlyEnd::DroppedOut).

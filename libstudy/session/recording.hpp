@@ -11,7 +11,8 @@
 
 namespace study {
 
-/// The trial is cut and shown again if the eye tracker gives no valid sample for longer than this, ns.
+/// An invalid sample of the eye tracker more than this time after the last valid sample cuts the trial, which
+/// is then shown again, ns.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
 /// A change of the interpupillary distance (IPD).
@@ -39,8 +40,8 @@ class Recording {
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
   /// Returns the gaze samples, frame slots and changes of the IPD that were recorded since the last call.
   Recorded take();
-  /// Throws TrialAgain if the eye tracker's samples that take() returned had a gap longer than
-  /// longest_gaze_gap_ns without a valid sample.
+  /// Throws TrialAgain if take() returned an invalid sample of the eye tracker that came more than
+  /// longest_gaze_gap_ns after the last valid sample (or after the start of the recording).
   void require_gaze() const;
 
   /// Name of the gaze source that the fluid follows now. An eye tracker without permission to record is not

@@ -1,7 +1,7 @@
 #pragma once
 /// How often a cut trial is shown again, and how long the screen is black before the next showing. The rules
-/// are the same for every display and every cause of a cut. The black screen keeps repeated cuts from making
-/// a stimulus flash.
+/// are the same for every display and every cause of a cut, except that a cut for lack of gaze also waits
+/// until the eye tracker sees the eyes. The black screen keeps repeated cuts from making a stimulus flash.
 
 #include "libstudy/session/running.hpp"
 
@@ -16,8 +16,9 @@ inline constexpr double black_after_cut_s = 1;
 inline constexpr double eyes_within_s = 3;
 
 /// Repeats cut trials and pauses by the rules of this file, in one running session. Each pause reports the
-/// problem (SessionHooks::trouble). It lasts until the experimenter continues or, without a console, the
-/// participant. With a simulated participant, base::Error instead of a pause; the session stays open.
+/// problem (SessionHooks::trouble). It lasts until the experimenter continues or, if that hook is missing or
+/// returns false, until the participant continues. With a simulated participant, base::Error instead of a
+/// pause; the session stays open.
 class Repeats {
  public:
   explicit Repeats(const Running& run) : run_(run) {}
@@ -32,7 +33,7 @@ class Repeats {
   void pause(const Trouble& trouble);
 
   const Running& run_;
-  int cuts_ = 0;  ///< cuts of the trial since its start or the last pause
+  int cuts_ = 0;  ///< cuts of the trial since its start, or since the pause that they caused
   bool eyes_seen_ =
       false;  ///< true: the eye tracker needs no check; reset by a pause and by a cut for lack of gaze
 };

@@ -98,16 +98,17 @@ class Stopped : public std::runtime_error {
 std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSetting& setting,
                                           const Display& display, std::uint64_t schedule_seed);
 
-/// Throws the base::Error of trial_intervals() if a setting of the protocol cannot be shown. Call before
-/// anything is written.
+/// Throws the base::Error of trial_intervals() if a setting of the protocol cannot be shown. Accepts every
+/// protocol with native timing, which has no schedules. Call before anything is written.
 void check_settings(const Protocol& protocol, const Display& display);
 
 /// Runs the units of `session` that are not done, in their order. A trial that was cut is shown again from
-/// its start, as a new attempt, as often as repeats.hpp allows. Answered questions are not asked again. An
-/// answer outside Question::accept ends the session: EarlyEnd::Refused on a consent page, after confirmation,
-/// else EarlyEnd::NotEligible. A score of Question::stop_at or more ends the session as EarlyEnd::Stopped. If
-/// the session ended early, returns the ending after say_farewell(). Throws Stopped, or the first error of a
-/// part; the store then has all given answers.
+/// its start, as a new attempt, as often as repeats.hpp allows; the new attempt asks all its questions.
+/// Otherwise answered questions are not asked again. An answer outside Question::accept ends the session:
+/// EarlyEnd::Refused on a consent page, after confirmation, else EarlyEnd::NotEligible. A score of
+/// Question::stop_at or more ends the session as EarlyEnd::Stopped. If the session ended early, returns the
+/// ending after say_farewell(). Throws Stopped, or the first error of a part; the store then has all given
+/// answers.
 std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
                                   const SessionParts& parts, const SessionHooks& hooks);
 

@@ -129,8 +129,8 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   }
 }
 
-/// Lets the procedure choose the cells of a trial. After an interruption the answers are still the same, so
-/// the procedure chooses the same cells again.
+/// Lets the protocol's adaptive procedure choose the cells of a trial from the answers so far. After an
+/// interruption the answers are the same, so the procedure chooses the same cells again.
 void TrialPlayer::choose(OpenUnit& unit) {
   Store& store = run_.parts.store;
   const auto answers = store.track_answers(run_.session.id, run_.protocol.design.procedure->question);
@@ -262,8 +262,8 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     shown.play_speed = play_speed(played, verdict.grade);
     return verdict;
   } catch (...) {
-    // Stores the rest of the frames and the reason of the cut. If this fails too, the next opening of the
-    // database marks the cut. Gaze samples after the last frame are not stored.
+    // Stores the rest of the frames and the reason of the cut. If this fails too, the next Store::open_runs()
+    // marks the presentation as interrupted. Gaze samples after the last frame are not stored.
     const std::string reason = reason_of_cut();
     try {
       parts.store.add_frames(presentation, start_ns, journal.finish({}));

@@ -12,8 +12,8 @@ namespace study {
 /// A database that is open for reading.
 struct OpenedStudy {
   std::unique_ptr<sqlite::Connection> database;
-  /// Rows that only the database's journal of answers contains, in words: "3 answers and 9 other rows are in
-  /// the journal only"; empty: none.
+  /// How the database lags behind its journal of answers, in words: "3 answers and 9 other rows are in the
+  /// journal only" or, if no row is missing, "2 answers differ from the journal"; empty: it does not.
   std::string lacking;
 };
 

@@ -276,7 +276,7 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
-                      "give another code: every merge deletes the data under this code");
+                      "give another code: this code stays with the person who withdrew");
   }
 }
 

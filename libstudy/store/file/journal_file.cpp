@@ -23,10 +23,11 @@ using Json = base::Json;
 namespace {
 
 [[noreturn]] void fail(const fs::path& path, const std::string& problem, int reason) {
-  throw base::Error(path.string(), problem + ": " + std::strerror(reason),
-                    reason == ENOSPC || reason == EDQUOT || reason == EFBIG
-                        ? "free space on the disk, then run vip-study resume; all answers given are kept"
-                        : "the journal of answers must be a file in a folder that you may write to");
+  throw base::Error(
+      path.string(), problem + ": " + std::strerror(reason),
+      reason == ENOSPC || reason == EDQUOT || reason == EFBIG
+          ? "free space on the disk, then run vip-study resume; all answers given are kept"
+          : "see that you may write to the journal of answers and its folder, and that it is no link");
 }
 
 [[noreturn]] void fail_to_read(const fs::path& path, int reason) {
@@ -35,7 +36,7 @@ namespace {
       reason == EACCES || reason == EPERM
           ? "ask its owner for the right to read it: it says who withdrew, and without it nothing "
             "of the database is shown"
-          : "the journal of answers must be a file on a sound disk, not a link");
+          : "check the disk, and see that the journal of answers is a file and no link");
 }
 
 /// Writes all bytes; returns 0, or errno if that fails.
