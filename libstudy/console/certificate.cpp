@@ -32,7 +32,6 @@ std::string scene_of(const CertificateRow& row, const Rows& rows) {
   return shared ? row.what.scene : stem(row.what.scene);
 }
 
-/// A column of names, with one name per row.
 struct NameColumn {
   std::string title;
   std::vector<std::string> names;

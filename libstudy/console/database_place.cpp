@@ -36,8 +36,8 @@ constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0xBACBACBC, "VMware shared folder"}};
 constexpr std::uint32_t fuse = 0x65735546;
 
-/// Mount types of network file systems through FUSE. FUSE alone proves nothing: it also serves local disks,
-/// such as NTFS and exFAT ("fuseblk").
+/// Mount types of network file systems through FUSE. Not every FUSE mount is a network file system: FUSE also
+/// serves local disks, such as NTFS and exFAT ("fuseblk").
 constexpr std::array network_mounts{"fuse.sshfs",
                                     "fuse.rclone",
                                     "fuse.glusterfs",

@@ -61,7 +61,7 @@ void ConsoleTerminal::read_keys() {
   char bytes[64];
   const ssize_t count = read(STDIN_FILENO, bytes, sizeof bytes);
   if (count <= 0) input_ended_ = true;
-  // Ignores escape sequences, such as those of arrow keys: the console has no such keys.
+  // Ignores escape sequences, such as those of arrow keys, because no key of the console sends one.
   if (count > 1 && bytes[0] == 27) return;
   for (ssize_t i = 0; i < count; ++i) console_.key(bytes[i]);
 }

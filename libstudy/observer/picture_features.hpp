@@ -18,7 +18,8 @@ struct PictureFeatures {
   double flicker = 0;
 };
 
-/// Source of the picture features of cells. The features do not depend on a cell's frame rate.
+/// Source of the picture features of cells. Cells with the same stimulus share their features, whatever their
+/// frame rates are.
 class FeatureSource {
  public:
   virtual ~FeatureSource() = default;

@@ -17,7 +17,7 @@ struct RunOptions {
   std::string bake;                     ///< absolute path of the played bake or folder of bakes; empty = none
   std::string backend = "auto";
   std::string answer;        ///< ways of answering in a headset, such as "ray,stick" (AnswerWays)
-  std::string gaze;          ///< "fixed" (see study::Viewing), "mouse", "head", "tracked" or "none"
+  std::string gaze;          ///< "fixed" (the middle of the picture), "mouse", "head", "tracked" or "none"
   bool accept_slow = false;  ///< also play live cells that do not reach their frame rate on this machine
   std::string station;
   std::optional<double> screen_width_mm, viewing_distance_mm;

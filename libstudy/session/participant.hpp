@@ -94,7 +94,7 @@ class Participant {
   /// valid (is_valid).
   virtual std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                        const Occasion& occasion, Clock& clock, const Check& check) = 0;
-  /// Called before each showing of a trial; may throw Left.
+  /// Called before each showing of a trial. Throws Left if the participant leaves the study.
   virtual void before_trial(const Occasion&) {}
   /// Waits on `clock` until the pause is over; a Break also waits until the participant continues.
   virtual void pause(const Pause& pause, Clock& clock, const Check& check) = 0;

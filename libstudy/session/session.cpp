@@ -99,7 +99,6 @@ void validate_gaze(const Running& run, const Block& block, const Check& check) {
                     "calibrate it in the headset's software and continue with vip-study resume");
 }
 
-/// Runs the units of one session.
 class SessionRun {
  public:
   explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}

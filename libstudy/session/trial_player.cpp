@@ -83,7 +83,6 @@ std::string reason_of_cut() {
   }
 }
 
-/// Clears the display when this object is destroyed.
 class Cleared {
  public:
   explicit Cleared(Display& display) : display_(display) {}
@@ -191,7 +190,6 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
   run_.parts.participant.pause({PauseKind::Black, std::max(0.0, seconds - gone_s)}, run_.parts.clock, check);
 }
 
-/// Announces by a word whether the first or the second stimulus of a pair follows.
 void TrialPlayer::announce(int interval) {
   const PauseKind word = interval == 0 ? PauseKind::First : PauseKind::Second;
   run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { poll_requests(run_, true); });

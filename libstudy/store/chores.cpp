@@ -55,7 +55,8 @@ void strike_out(Connection& database, const Chore& chore) {
   transaction.commit();
 }
 
-/// Deletes a person from all backups. If one backup fails, goes on with the next. True if all succeeded.
+/// Deletes a person from all backups, also if the deletion from one of them fails. True if all deletions
+/// succeeded.
 bool clean_backups(const fs::path& database, const std::string& person, CleanUp& done) {
   bool all = true;
   for (const fs::path& backup : backups_of(database)) {
@@ -82,7 +83,7 @@ void clean_personal(const fs::path& database, const Chore& chore, CleanUp& done)
 
 void do_chores(Connection& database, CleanUp& done) {
   const fs::path path = database.path();
-  bool personal_waits = false;  // a chore on the personal file failed; later chores on it must wait
+  bool personal_waits = false;  // a chore on the personal file failed; skip the later chores on that file
   for (const Chore& chore : pending(database)) {
     try {
       if (chore.kind == "backups") {

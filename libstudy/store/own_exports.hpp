@@ -31,7 +31,7 @@ std::string new_export_id();
 
 /// Path of the register; empty if there is no state folder.
 std::filesystem::path own_exports_file();
-/// The error text that says why the register cannot be written; none if it can be written.
+/// The error text that says why the register cannot be written; none if writing it succeeds.
 std::optional<std::string> why_not_registered();
 
 /// The exports registered at a path of this computer, newest last. Ignores lines of the register that cannot

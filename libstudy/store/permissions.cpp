@@ -136,8 +136,8 @@ void record_permission(Connection& database, std::int64_t session, const std::st
 }
 
 SharingCount count_sharing(Connection& database) {
-  // Omitted people refused in at least one session, or were asked and did not answer. The column `said` is
-  // true for people who refused.
+  // The people whom an export omits (granted = 0) refused in at least one session, or were asked and did not
+  // answer. The column `said` is true for people who refused.
   Statement row(
       database,
       "SELECT count(*) FILTER (WHERE h.granted = 1), count(*) FILTER (WHERE h.granted IS NULL), "

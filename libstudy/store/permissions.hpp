@@ -1,7 +1,7 @@
 #pragma once
 /// The permissions `gaze` and `sharing` of participants. gaze: gaze and head poses may be recorded; sharing:
-/// the data may be in public exports. A participant gives them on the consent page (questions gaze_kept and
-/// data_shared), and the experimenter can change them later.
+/// the data may be in public exports. A participant grants or refuses them on the consent page (questions
+/// gaze_kept and data_shared), and the experimenter can change them later.
 
 #include <cstdint>
 #include <filesystem>

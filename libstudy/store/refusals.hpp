@@ -35,8 +35,8 @@ std::set<std::string> people_with_gaze(sqlite::Connection& database);
 /// asked.
 std::set<std::string> people_without_gaze(sqlite::Connection& database);
 
-/// Files outside the database that may still contain gaze of a person. The experimenter must delete them: no
-/// command does it.
+/// Files outside the database that may still contain gaze of a person. The experimenter must delete these
+/// files, because no command does.
 struct GazeElsewhere {
   std::vector<std::string> backups;  ///< backups beside the database
   std::vector<std::string> exports;  ///< all exports with the person, as the register does not record gaze

@@ -26,7 +26,8 @@ Comparison compare(sqlite::Connection& database, const JournalRows& kept);
 /// True if the journal contains rows that the database lacks, or answers that differ from the database's.
 /// Different answers are ignored if the journal has an older schema, because its rows have other columns.
 bool is_ahead(const Comparison& found, const JournalContent& content, sqlite::Connection& database);
-/// A comparison in words: "2 answers and 7 other rows are in the journal only".
+/// A comparison in words: "2 answers and 7 other rows are in the journal only" or, if no row is lost, "2
+/// answers differ from the journal".
 std::string words_of(const Comparison& found);
 
 /// Finishes the work that a program had begun when it was killed, as its journal shows, within the caller's

@@ -13,7 +13,7 @@
 
 namespace study {
 
-/// Optional parts of the export.
+/// Optional parts and format of the export.
 struct CsvChoice {
   bool words = false;       ///< words.csv: participants' free text; notes.csv: the experimenter's notes
   bool gaze = false;        ///< gaze.csv, heads.csv, gaze_validations.csv
@@ -24,7 +24,8 @@ struct CsvChoice {
 /// sessions.csv records who may be in public exports. The files: one for each table with study data that
 /// `choice` includes; ratings.csv with one line per planned trial and question; the tables of
 /// sickness_tables(); dictionary.csv with the meaning of each column; each protocol's text as
-/// protocol_<hash>.toml; each solver setting's file (setting_file_name()).
+/// protocol_<hash>.toml; each solver setting's file (setting_file_name()); export.sha256 with the SHA-256 of
+/// each of these files.
 ///
 /// Only the owner can read folder and files. The export is written beside `folder` and renamed to it at the
 /// end, so that `folder` is never partial. `folder` may be absent, empty or an unchanged earlier export,

@@ -9,13 +9,14 @@
 
 namespace study {
 
-/// Writes a public export, which contains only shared_sessions(), into `folder`. Folder and base::Error as
-/// for export_csv(), but the umask decides who can read the files. The files for each session, besides
-/// README.md, dataset_description.json and materials/setting_*:
+/// Writes a public export, which contains only shared_sessions(), into `folder`. The rules for `folder` and
+/// the errors are those of export_csv(), but the umask decides who can read the files. README.md,
+/// dataset_description.json and the folder materials describe the whole data set. The files for each session:
 /// - data/study-<protocol>_subject-<code>_session-<protocol>v<visit>_data.csv: the session's rows of the
 ///   table of ratings (rating_table.hpp).
 /// - ..._description-pages_data.csv: answers on pages, without free text.
-/// - ..._description-<table>_data.csv: each table of sickness_tables() that has rows.
+/// - ..._description-<table>_data.csv: each table of sickness_tables() that has rows; <table> is its name
+///   without '_'.
 PublicExport export_psych_ds(const StudyFile& study, const std::filesystem::path& folder);
 
 }  // namespace study

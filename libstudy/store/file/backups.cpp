@@ -142,7 +142,7 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   if (version == 1 && !sessions.empty()) bury_in_schema_1(backup, sessions);
   if (version > 1 && !sessions.empty()) bury_later(backup, person, version);
   // An earlier deletion may have been interrupted before VACUUM. A tombstone shows an earlier deletion. A
-  // backup of schema 1 has no tombstones, so VACUUM runs if it is writable.
+  // backup of schema 1 has no tombstones, so VACUUM runs whenever that backup is writable.
   if (sessions.empty() && !(version == 1 ? ::access(path.c_str(), W_OK) == 0 : is_buried(backup, person)))
     return false;
   backup.execute("VACUUM");

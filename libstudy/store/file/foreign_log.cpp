@@ -72,16 +72,16 @@ std::string problem_of_log(const Log& log, std::string_view header) {
     if (has_identity(header) && has_identity(head) && !same_identity(head, header))
       return "is of another database";
   }
-  // An upgrade gives an older database its random cookie, and the log may also contain commits from before.
-  // So only the last version of the first page in the log must have a random cookie.
+  // An upgrade gives an older database its random cookie, and the log may also contain commits from before
+  // the upgrade. So only the last version of the first page in the log must have a random cookie.
   if (has_identity(header) && !has_identity(heads.back())) return "is of another database";
   if (behind(header, heads.front()) > 1) return "is of a later state of the database than the file";
   if (behind(heads.back(), header) > 0) return "is of an earlier state of the database than the file";
   return {};
 }
 
-/// The header of the first page as the journal recorded it; empty if the journal's first segment lacks the
-/// page.
+/// The database header in the first page as the journal recorded the page; empty if the journal's first
+/// segment lacks the page.
 std::string first_page_of(const File& journal, std::string_view head, std::size_t bytes) {
   const std::size_t record = 4 + bytes + 4;
   for (std::size_t at = u32(head, 20); at + record <= journal.size(); at += record) {
@@ -95,7 +95,8 @@ std::string first_page_of(const File& journal, std::string_view head, std::size_
 std::string problem_of_journal(const fs::path& path, std::string_view header) {
   const File journal(path);
   const std::string head = journal.read(0, 28);
-  // SQLite would read, and possibly delete, the super-journal that this journal names at its end.
+  // A journal that ends with rollback_magic names a super-journal, a further file that SQLite would read and
+  // possibly delete.
   if (journal.size() >= 16 && journal.read(journal.size() - 8, 8) == salvaging::rollback_magic)
     return "names a further file to be deleted";
   if (head.size() < 28 || !head.starts_with(salvaging::rollback_magic) || !is_ours(header)) return {};

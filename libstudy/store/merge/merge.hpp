@@ -16,9 +16,11 @@ namespace study {
 struct Balance {
   std::string name, version;
   int sessions = 0;  ///< number of sessions that count
-  /// number of sessions by sequence of groups; one entry: one sequence, or random groups
+  /// number of sessions that use each sequence of groups; a single entry if there is one sequence or the
+  /// groups are random
   std::vector<int> sequence_uses;
-  std::vector<int> slot_uses;  ///< number of sessions by slot; empty: this program cannot read the protocol
+  std::vector<int>
+      slot_uses;  ///< number of sessions in each slot; empty: this program cannot read the protocol
   /// True if a sequence, or a slot, has at least two sessions more than another.
   bool off() const;
 };

@@ -24,7 +24,8 @@ namespace {
 // (Known) only increase: each takes the largest value of all copies. So the result depends neither on the
 // order nor on the number of merges.
 
-/// Identifies a permission change: what ("gaze" or "sharing"), utc, true if refused, uid.
+/// Identifies a permission change by four columns: what ("gaze" or "sharing"), utc, whether it is a refusal,
+/// and uid.
 using Key = std::tuple<std::string, std::string, bool, std::optional<std::string>>;
 
 struct Known {
@@ -124,7 +125,7 @@ void add_labels(const Content& content, sqlite::Connection& target) {
   store_labels(target, joined);
 }
 
-/// For each column with row numbers ("trial_id", ...): the new row number by the old one.
+/// For each column with row numbers ("trial_id", ...): the new row number of each old row number.
 using RowNumbers = std::map<std::string, std::unordered_map<std::int64_t, std::int64_t>>;
 
 /// A table whose rows belong to a session.

@@ -15,7 +15,7 @@ namespace study {
 inline constexpr const char* setting_sha256_sql =
     "(SELECT group_concat(json_extract(e.value, '$.sha256'), ' ') FROM run r, json_each(iif(json_valid("
     "r.options), r.options, '{}'), '$.settings') e WHERE r.run_id = session.run_id)";
-/// Meaning of the column setting_sha256, as every export describes it.
+/// Meaning of the column setting_sha256 in the descriptions of exports.
 inline constexpr const char* setting_sha256_meaning =
     "SHA-256 of each setting file (--setting) that live cells ran at, separated by spaces; the export holds "
     "each as setting_<first 12 digits>.toml; empty: the solver's usual settings";

@@ -1,6 +1,6 @@
 #pragma once
 /// Numbers of units, trials, showings, answers and other rows of one session. Does not change the database.
-/// base::Error as read_tasks().
+/// base::Error if the database cannot be opened (open_study()).
 
 #include <cstdint>
 #include <filesystem>

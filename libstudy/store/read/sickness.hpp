@@ -53,7 +53,7 @@ struct SicknessSession {
 /// Every session with an answer to the SSQ, also an empty one, or a score on the FMS; by protocol,
 /// participant and visit. base::Error for an answer outside its scale or to an unknown SSQ item.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
-/// base::Error as read_tasks().
+/// Opens the database for reading; base::Error also if it cannot be opened (open_study()).
 std::vector<SicknessSession> read_sickness(const StudyFile& study);
 
 }  // namespace study

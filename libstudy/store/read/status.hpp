@@ -1,6 +1,6 @@
 #pragma once
-/// Reads the protocols and sessions of a database with their counts, and timing certificates.
-/// Does not change the database. base::Error as read_tasks().
+/// Reads the protocols and sessions of a database with their counts, and timing certificates. Does not change
+/// the database. base::Error if the database cannot be opened (open_study()).
 
 #include <cstdint>
 #include <filesystem>

@@ -141,7 +141,6 @@ bool add_once(std::vector<std::string>& list, const std::string& item) {
   return true;
 }
 
-/// Reads all sessions of one protocol, with their trials and answers.
 class Reader {
  public:
   Reader(Connection& database, std::int64_t protocol_id, const Protocol& protocol)

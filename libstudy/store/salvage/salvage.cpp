@@ -99,7 +99,6 @@ std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
   return out;
 }
 
-/// Converts a row of an earlier schema to the current schema.
 Values as_now(const EarlierShape& earlier, const Values& row) {
   Values out;
   for (const auto& column : earlier.source) out.push_back(column ? row.at(*column) : salvaging::Value());

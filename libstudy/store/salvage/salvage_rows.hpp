@@ -48,7 +48,7 @@ class Rebuild {
   Salvage& told_;
   std::vector<Shape> shapes_;
   std::map<std::string, sqlite::Statement> inserts_;
-  std::set<std::string> withdrawn_;  // persons who withdrew
+  std::set<std::string> withdrawn_;  // session.person of people who withdrew
   bool journal_is_newer_ = true;
 };
 
