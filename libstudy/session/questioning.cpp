@@ -97,8 +97,8 @@ void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Questi
     }
   }
   if (!personal.empty()) {
-    // Personal answers are in another file, and a stored personal answer is not asked again. So first commit
-    // the ending that the answers cause.
+    // Personal answers are committed to another file, and a stored personal answer is not asked again. So the
+    // ending that the answers cause is committed first: a kill between the two commits then cannot lose it.
     if (ending) run_.parts.store.end_session(run_.session.id, *ending, run_.now_ns());
     run_.parts.personal->keep(personal);
   }

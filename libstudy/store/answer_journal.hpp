@@ -42,8 +42,8 @@ namespace study {
 /// destroy it before the connection.
 class AnswerJournal {
  public:
-  /// Reconciles journal and database (settle()). base::Error if the journal contains rows that the database
-  /// lacks, or if the journal cannot be written.
+  /// Reconciles journal and database (settle()). base::Error if the journal has rows that the database lacks,
+  /// or other answers (is_ahead()), or if the journal cannot be written.
   explicit AnswerJournal(sqlite::Connection& database);
   ~AnswerJournal();
   AnswerJournal(const AnswerJournal&) = delete;

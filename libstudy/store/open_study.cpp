@@ -63,9 +63,9 @@ void take_decisions(Connection& copy, const JournalRows& rows) {
 
 /// Differences between a database and its journal of answers.
 struct Findings {
-  bool ahead = false;   ///< the journal contains rows that the database lacks (is_ahead())
+  bool ahead = false;   ///< the journal has rows that the database lacks, or other answers (is_ahead())
   bool begun = false;   ///< the journal contains rows of an interrupted commit
-  std::string lacking;  ///< the missing rows in words (words_of())
+  std::string lacking;  ///< how the database lags behind, in words (words_of())
   std::vector<std::string> withdrawn;
 };
 

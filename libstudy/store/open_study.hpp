@@ -19,9 +19,9 @@ struct OpenedStudy {
 
 /// Opens a database for reading (open_database()) and compares it with the journal of answers beside it.
 ///
-/// base::Error if the journal contains rows that the database lacks, because the database's log was lost or a
-/// backup was restored. With StudyFile::incomplete such a database is opened, and `lacking` describes the
-/// missing rows.
+/// base::Error if the journal has rows that the database lacks, or other answers: the database's log was
+/// lost, or a backup was restored. With StudyFile::incomplete such a database is opened, and `lacking`
+/// describes the difference.
 ///
 /// The result has the state that the next opening for writing would produce; it is a temporary copy if the
 /// file differs from this state. The state includes a commit that a kill interrupted. It excludes people with

@@ -1,7 +1,8 @@
 #pragma once
 /// Deletes gaze data of sessions in which gaze is refused: gaze samples, head poses and validations of the
 /// eye tracker. The stored permissions (permissions.hpp) determine the rows to delete. So if a kill
-/// interrupts the command that recorded a refusal, the next opening for writing still deletes the rows.
+/// interrupts the command that recorded a refusal, the next Store, withdrawal, merge or change of permissions
+/// still deletes the rows.
 
 #include <cstdint>
 #include <filesystem>

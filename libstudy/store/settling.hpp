@@ -41,8 +41,8 @@ struct Settled {
   std::set<std::string> gaze_deleted;  ///< persons whose gaze was deleted because they refuse it
 };
 /// Reconciles database and journal: finish_what_was_begun(), then adds the database's other rows to the
-/// journal. base::Error if the journal contains rows that the database lacks (is_ahead()), or if it cannot be
-/// written.
+/// journal. base::Error if the journal has rows that the database lacks, or other answers (is_ahead()), or if
+/// the journal cannot be written.
 Settled settle(sqlite::Connection& database, JournalFile& file);
 
 /// Calls settle(), for callers that have no JournalFile; call it before any other write. Returns lines that

@@ -122,7 +122,7 @@ struct ShownSlot {
 
 /// The result of an eye tracker's validation at one target.
 struct ValidatedPoint {
-  std::int64_t clock_ns = 0;                  ///< time of the target's first sample
+  std::int64_t clock_ns = 0;                  ///< time at which the sampling at the target began
   double azimuth_deg = 0, elevation_deg = 0;  ///< direction of the target
   std::int64_t samples = 0, valid = 0;        ///< number of samples, and of valid samples
   std::optional<double> accuracy_deg;         ///< angle from target to mean gaze; none: no valid sample

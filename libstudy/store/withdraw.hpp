@@ -15,7 +15,7 @@ namespace study {
 /// Amount of a person's data in a database.
 struct Stock {
   std::int64_t sessions = 0, answers = 0, frames = 0;
-  std::vector<std::string> stations;  ///< stations of the sessions; their databases stay unchanged
+  std::vector<std::string> stations;  ///< stations of the sessions; the databases there stay unchanged
 };
 
 /// The result of a withdrawal, with the files that the experimenter must handle.
@@ -36,8 +36,9 @@ std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 /// Deletes a participant's data from `database`, its log, its journal of answers, its backups and the
 /// personal file, and overwrites the bytes. Also deletes registered exports (delete_exports_of_withdrawn()).
 /// Only a tombstone stays: a row that says who withdrew. The participant's slot in the assignment is free
-/// again. If a kill interrupts the withdrawal, repeat it or open the database for writing. Repeating also
-/// retries clean-ups that failed. base::Error if the participant is unknown or the database is in use.
+/// again. If a kill interrupts the withdrawal, repeat it or open the database with a Store, which finishes
+/// it. Repeating also retries clean-ups that failed. base::Error if the participant is unknown or the
+/// database is in use.
 Withdrawal withdraw(const std::filesystem::path& database, const std::string& participant);
 /// withdraw() for a database that is already open for writing under its WriterLock.
 Withdrawal withdraw(sqlite::Connection& database, const std::string& participant);

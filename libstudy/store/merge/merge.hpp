@@ -19,8 +19,7 @@ struct Balance {
   /// number of sessions that use each sequence of groups; a single entry if there is one sequence or the
   /// groups are random
   std::vector<int> sequence_uses;
-  std::vector<int>
-      slot_uses;  ///< number of sessions in each slot; empty: this program cannot read the protocol
+  std::vector<int> slot_uses;  ///< number of sessions per slot; empty: this program cannot read the protocol
   /// True if a sequence, or a slot, has at least two sessions more than another.
   bool off() const;
 };

@@ -49,9 +49,9 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 /// order of the sources.
 std::map<std::string, std::string> name_people(const Content& content);
 
-/// Reasons why the stations' shares of the assignment overlap: two sources have the same station number or no
-/// number, sessions were recorded with different numbers of stations, or only some of them have a station
-/// number. Each is a sentence without a full stop.
+/// Reasons why the stations' shares of the assignment overlap: two sources with the same station number (or
+/// both without one) each have a session that the other lacks; sessions were recorded with different numbers
+/// of stations; or only some sessions have a station number. Each reason is a sentence without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the chosen sessions, with the people's new codes `names`, into `target`, an empty database of the

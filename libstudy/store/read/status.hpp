@@ -56,7 +56,7 @@ struct StudyStatus {
   std::vector<std::string> withdrawn;  ///< codes of people who withdrew
   std::int64_t frames = 0;
   std::int64_t gaze = 0;  ///< number of gaze samples
-  /// rows that only the journal of answers contains (OpenedStudy::lacking); empty: none
+  /// how the database lags behind its journal of answers, in words (OpenedStudy::lacking); empty: it does not
   std::string lacking;
 };
 StudyStatus read_status(const StudyFile& study);

@@ -130,7 +130,7 @@ struct TaskProtocol {
 struct TaskStudy {
   std::vector<TaskProtocol> protocols;
   int withdrawn = 0;  ///< number of participants who withdrew, under all protocols
-  /// rows that only the journal of answers contains (OpenedStudy::lacking); empty: none
+  /// how the database lags behind its journal of answers, in words (OpenedStudy::lacking); empty: it does not
   std::string lacking = {};
   /// Answers to TaskProtocol::about_people; empty until read_about_people() adds them.
   std::vector<PersonalEntry> about_people = {};
