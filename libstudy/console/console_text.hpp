@@ -1,5 +1,5 @@
 #pragma once
-/// Helpers for the console's lines.
+/// The time of day, the steady clock and the free disk space, for the console's lines.
 
 #include <chrono>
 #include <cstdint>

@@ -33,9 +33,8 @@ class Repeats {
   void pause(const Trouble& trouble);
 
   const Running& run_;
-  int cuts_ = 0;  ///< cuts of the trial since its start, or since the pause that they caused
-  bool eyes_seen_ =
-      false;  ///< true: the eye tracker needs no check; reset by a pause and by a cut for lack of gaze
+  int cuts_ = 0;            ///< cuts of the trial since its start, or since the pause that they caused
+  bool eyes_seen_ = false;  ///< false: the eye tracker must be checked, as after a pause or a cut for gaze
 };
 
 }  // namespace study

@@ -57,7 +57,7 @@ Giving stored_labels(Connection& database) {
   Giving labels;
   for (Statement row(database, "SELECT kind, owner, label FROM label ORDER BY kind, owner"); row.step();)
     labels.give(row.text(0), row.text(1), row.text(2));
-  // Labels of people who withdrew may be published, so they are not assigned again.
+  // The label made from the code of a person who withdrew may be published, so it is not assigned again.
   for (Statement row(database, "SELECT participant FROM tombstone"); row.step();)
     labels.reserve("person", letters_of(row.text(0)));
   return labels;

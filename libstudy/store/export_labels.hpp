@@ -1,7 +1,7 @@
 #pragma once
 /// Labels for exports in BIDS and Psych-DS, whose names allow only letters and digits. A label of a person or
-/// a protocol is assigned once and stored in the table `label`. So a label that was published is never given
-/// to a later participant.
+/// a protocol is assigned once and stored in the table `label`. So later exports use the same labels. The
+/// label made from the code of a person who withdrew is not assigned again.
 
 #include <cstdint>
 #include <map>

@@ -82,7 +82,9 @@ Findings look(Connection& database, const JournalContent& content) {
   return found;
 }
 
-/// A temporary copy in the state that settle() would give the database.
+/// A temporary copy in the state that settle() would give the database. If the journal is ahead
+/// (found.ahead), settle() would throw: the copy then includes, of the rows that only the journal has, the
+/// permission changes and consent answers.
 std::unique_ptr<Connection> as_settled(Connection& database, const JournalContent& content,
                                        const Findings& found) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});

@@ -26,7 +26,8 @@ struct OpenedStudy {
 /// The result has the state that the next opening for writing would produce; it is a temporary copy if the
 /// file differs from this state. The state includes a commit that a kill interrupted. It excludes people with
 /// a tombstone in the journal or in an unfinished withdrawal. A temporary copy also excludes gaze that is
-/// refused. The same rules apply to an incomplete study.
+/// refused. In an incomplete study the same people and gaze are excluded; of the rows that only the journal
+/// has, it includes permission changes and consent answers.
 OpenedStudy open_study(const StudyFile& study);
 
 /// OpenedStudy::lacking of a database; an incomplete database is no error.

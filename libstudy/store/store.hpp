@@ -195,8 +195,7 @@ class Store {
   /// Commits the cells that an adaptive procedure chose for a trial that is not done.
   void choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second);
   /// The answers of a session to a question of its stimulus block, in the order of the trials' positions.
-  /// Only answers to trials that are done count, and neither to excluded trials nor to showings that were set
-  /// aside.
+  /// Omits answers to trials that are excluded or not done, and to showings that were set aside.
   std::vector<TrackAnswer> track_answers(std::int64_t session, const std::string& question);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. interval: 0 for the first
@@ -265,8 +264,8 @@ class Store {
  private:
   struct Statements;
 
-  /// A Store on a temporary copy of a database that another program has locked. It writes changes only to the
-  /// journal; the next opening of the database inserts them there.
+  /// A Store on a temporary copy of a database that another program has locked. Its commits reach only the
+  /// journal; the next settle() of the database inserts their rows there.
   explicit Store(Store& locked);
   /// Makes a change that must not be lost: an answer or a note. If another program has locked the file, makes
   /// the change in copy_ and then throws LockedOut.

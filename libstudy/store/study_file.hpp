@@ -6,7 +6,8 @@
 
 namespace study {
 
-/// The database that a reader opens. A path converts to a StudyFile that must be complete.
+/// The database that a reader opens. A path converts to a StudyFile whose database must have all rows of its
+/// journal of answers.
 struct StudyFile {
   template <class Path>
   requires std::convertible_to<const Path&, std::filesystem::path> StudyFile(const Path& database,

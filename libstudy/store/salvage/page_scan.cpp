@@ -6,7 +6,7 @@
 
 #include "libstudy/store/file/page_file.hpp"
 
-// The format: https://www.sqlite.org/fileformat2.html
+// The format of a database's pages: https://www.sqlite.org/fileformat2.html
 namespace study::salvaging {
 
 namespace fs = std::filesystem;
