@@ -16,7 +16,8 @@ namespace study {
 /// The result of a clean-up.
 struct CleanUp {
   std::vector<std::filesystem::path> cleaned;  ///< backups and personal files changed, exports deleted
-  /// Files that still contain data of a withdrawn person or an old code, each with path, reason and remedy.
+  /// Clean-ups that failed, such as files that still contain data of a withdrawn person, refused gaze or an
+  /// old code; each with path, reason and remedy.
   std::vector<std::string> left;
 };
 

@@ -104,7 +104,7 @@ struct OpenRun {
 /// Why a session ended before its last unit.
 enum class EarlyEnd {
   Refused,      ///< the participant did not consent
-  NotEligible,  ///< the answers to the screening ruled the participant out
+  NotEligible,  ///< an answer on a screening or demographics page ruled the participant out
   Stopped,      ///< a stop rule, the participant or the experimenter ended the session
   DroppedOut    ///< the participant left (exception Left); the slot is free again
 };
@@ -226,7 +226,7 @@ class Store {
   /// as add_gaze().
   void add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed);
   /// Commits a presentation's last frames and its timing verdict. If the trial had no schedule (nominal mean
-  /// 0), the verdict is stored only if the trial was cut short.
+  /// 0), the verdict is stored only if the trial was cut because it overran.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                         std::span<const FrameRecord> frames, const TimingVerdict& verdict);
   /// Commits that a presentation was cut short, and why. Its frames stay in the database.

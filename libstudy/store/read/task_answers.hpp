@@ -23,7 +23,7 @@ struct TaskShowing {
   StimulusSpec what;
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
   bool played = false;             ///< true: the stimulus was shown; false: it has no timing
-  std::optional<Verdict> verdict;  ///< timing verdict; none: there was no schedule
+  std::optional<Verdict> verdict;  ///< timing verdict; none: no schedule, and not cut for overrunning
   TimingGrade grade = TimingGrade::CpuSubmit;
   std::string reason;  ///< why the timing verdict is not pass
   stats::FpsMoments realised;
@@ -40,8 +40,8 @@ struct TaskShowing {
 struct TaskAnswer {
   std::string question;
   std::optional<int> score;
-  std::optional<double> response_time_s =
-      {};  ///< from the page's appearance to the answer's last change; none: no answer
+  /// Time from the page's appearance to the answer's last change; none: no answer.
+  std::optional<double> response_time_s = {};
 };
 
 /// The text in TaskTrial::excluded if the protocol's policy excluded the trial because of an interruption.
@@ -114,8 +114,8 @@ struct TaskProtocol {
   double content_step_s = 1.0 / 60;
   std::vector<EffectSet> effects = {};  ///< levels of the factor effects; empty: effects are not a factor
   bool paint_temperature = false;       ///< Design::paint_temperature
-  std::vector<StimulusSpec> treatments =
-      {};  ///< method and effects of each of `methods`; empty if effects are not a factor
+  /// Method and effects of each of `methods`; empty if effects are not a factor.
+  std::vector<StimulusSpec> treatments = {};
 
   /// Questions on pages of kind demographics, screening and question that no trial asks, without text
   /// questions.
