@@ -42,7 +42,8 @@ void AnswerJournal::follow() {
 }
 
 /// If another program removed or changed the journal, sets the changed file aside and begins a new journal.
-/// The next write() adds the rows to be committed; kept() adds all other rows after the commit.
+/// write(), which calls this function, then adds the rows to be committed; kept() adds all other rows after
+/// the commit.
 void AnswerJournal::look_after_file() {
   const std::string trouble = file_.trouble();
   if (trouble.empty()) return;

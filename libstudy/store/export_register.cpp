@@ -46,8 +46,8 @@ void check_writable(const fs::path& file) {
       "ask somebody to export who may write to the database and its folder");
 }
 
-/// Opens the database for a short write to its register; upgrades an older schema first. Works without a
-/// WriterLock while a session is running.
+/// Opens the database for a short write to its register; upgrades an older schema first. Needs a WriterLock
+/// only for an upgrade, so it works while a session is running.
 std::unique_ptr<Connection> open_register(const fs::path& database) {
   const fs::path file = real_file(database);
   check_writable(file);

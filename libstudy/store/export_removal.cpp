@@ -132,8 +132,8 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
   return "";
 }
 
-/// Deletes the export of `one`, and drafts beside it. Returns the reason if it cannot be deleted; empty if it
-/// no longer exists. An export that was moved gives a reason once.
+/// Deletes the export of `one`, and drafts beside it. Returns the reason if it is not deleted; empty if
+/// nothing of it is left. An export that was moved gives a reason once.
 std::string remove_leftover(Connection& database, const Leftover& one) {
   if (one.host != this_host() && !one.host.empty()) {
     return "is on the computer '" + base::shortened(one.host) +

@@ -98,7 +98,7 @@ std::set<std::string> delete_refused_gaze(Connection& database) {
 void drop_unallowed_gaze(Connection& database) {
   for (const char* table : all_tables) database.execute("DELETE FROM " + rows_of(table, refused_now));
   // A refusal applies to the showings that had begun when it was recorded. These are the session's first n
-  // showings; n is permission_change.showings.
+  // showings; n is permission_change.showings, and NULL means all showings.
   for (const std::string table : of_showings) {
     database.execute(
         "DELETE FROM " + table +

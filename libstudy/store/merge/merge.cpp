@@ -207,9 +207,9 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
   transaction.commit();
 }
 
-/// Adds to beside.left the backups and exports of `into` that still contain gaze which this merge deleted,
-/// because the person refused gaze at another station. had_gaze: persons with gaze in `into` before the
-/// merge.
+/// Adds to beside.left the backups and exports of `into` that may still contain gaze which this merge
+/// deleted: those of persons with gaze in `into` before the merge (had_gaze) who now have a session in which
+/// gaze is not allowed.
 void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
   std::set<std::string> deleted;
   for (const std::string& person : people_without_gaze(into)) {
