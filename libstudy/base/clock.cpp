@@ -5,9 +5,10 @@
 namespace study {
 
 namespace {
-// Length of the last part of a wait, in which wait_until() spins instead of sleeping, ns. A sleeping thread
-// wakes some tens of microseconds late. On an idle virtual machine it wakes up to a few milliseconds late,
-// because the halted processor must be scheduled again. At 50 frames/s the spinning uses 40 % of one core.
+// Length of the last part of a wait, in which wait_until() spins instead of sleeping, ns. Sleeping threads
+// wake late: by some tens of microseconds, and on an idle virtual machine by up to a few milliseconds,
+// because its halted processor must be scheduled again. At 50 frames/s, spinning for 8 ms of each 20 ms uses
+// 40 % of one core.
 constexpr std::int64_t spin_ns = 8'000'000;
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The clock by which a session runs: a real one, or a virtual one with which the same code never waits.
+/// The clock of a session: the real clock of the system, or a virtual clock that jumps to each deadline
+/// instead of waiting.
 
 #include <cstdint>
 
@@ -10,8 +11,7 @@ class Clock {
   virtual ~Clock() = default;
   /// The current time, ns; never decreases. The real clock reads CLOCK_MONOTONIC.
   virtual std::int64_t now_ns() const = 0;
-  /// Returns at deadline_ns or as soon after it as possible; at once if deadline_ns has passed. The real
-  /// clock sleeps first, then spins.
+  /// Returns once the clock is at or past deadline_ns. The real clock first sleeps, then spins.
   virtual void wait_until(std::int64_t deadline_ns) = 0;
 };
 

@@ -20,7 +20,7 @@ std::uint64_t counter_random(std::uint64_t key, std::uint64_t counter);
 /// A 64-bit key computed from a text: the first 16 hexadecimal digits of the text's SHA-256.
 std::uint64_t random_key(std::string_view text);
 
-/// A sequence of random numbers with a fixed key; each number drawn advances the counter.
+/// A sequence of random numbers with a fixed key. Each call of bits() advances the counter by 1.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t key, std::uint64_t first_counter = 0)

@@ -16,7 +16,7 @@ namespace {
 /// A cell reaches the display's refresh rate if its mean frame rate is at least this fraction of that rate.
 constexpr double at_refresh = 0.98;
 
-/// Smallest tau over all windows of up to 30 frame intervals, frames/s. The solver uses the same windows.
+/// Smallest tolerance tau of the paper's model over all windows of up to 30 frame intervals, frames/s.
 double least_tau(const std::vector<double>& intervals_s) {
   stats::FpsWindow window;
   double least = HUGE_VAL;
@@ -61,13 +61,13 @@ MeasuredCell judge(const Protocol& protocol, const MeasuredStimulus& measured, i
   out.what = cell.stimulus;
   out.setting = cell.setting;
   out.showing_s = rehearsal.showing_s;
-  if (rehearsal.frame_s.empty()) return out;  // a trial of one frame has no frame intervals
+  if (rehearsal.frame_s.empty()) return out;  // a trial of one frame: the first frame's time does not count
   std::vector<double> shown_s, sorted = rehearsal.frame_s;
   for (const double s : rehearsal.frame_s)
     shown_s.push_back(refresh_hz > 0 ? std::max(s, 1 / refresh_hz) : s);
   out.fps = stats::fps_moments(shown_s);
   out.tau_min = least_tau(shown_s);
-  // Excludes frames that were not measured: all of them have the same mean time.
+  // Excludes frames with steps that were not measured, because rehearse() only estimates their times.
   if (rehearsal.measured > 0) sorted.resize(rehearsal.measured);
   std::sort(sorted.begin(), sorted.end());
   for (const double s : sorted) out.mean_ms += 1000 * s / static_cast<double>(sorted.size());

@@ -1,5 +1,6 @@
 #pragma once
-/// Predicts from measured step times whether this machine reaches a protocol's frame rates with live methods.
+/// Predicts from measured step times whether this machine computes and draws live fluid at the frame rates of
+/// a protocol.
 
 #include <functional>
 #include <string>
@@ -22,7 +23,7 @@ struct MeasuredCell {
   stats::FpsMoments fps;  ///< frame rate; each frame counts as at least one refresh period long
   double mean_ms = 0;     ///< mean time to compute and draw a frame, without waiting
   double p95_ms = 0;      ///< 95th percentile of the time to compute and draw a frame, without waiting
-  double tau_min = 0;     ///< smallest tau over windows of up to 30 frames, frames/s (Eq. 11)
+  double tau_min = 0;     ///< smallest ptpe_tolerance() over windows of up to 30 frames, frames/s
   double showing_s = 0;   ///< expected duration of a showing of the cell, s
   bool too_slow = false;  ///< the machine is too slow for the cell; see judge_measured()
   std::string words;      ///< why the cell is too slow or its showings would be degraded; empty if neither
@@ -35,19 +36,22 @@ struct MeasuredReport {
                                     ///< empty if they would not
 };
 
-/// Returns the frame intervals of a setting on the display, ns; empty if the setting has no schedule on it.
+/// Returns the frame intervals of a setting on the display, ns; empty if the setting has no schedule on the
+/// display.
 using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 
 /// Rehearses and judges each measured cell. refresh_hz: rate of the display; 0: frames are shown when ready.
 ///
-/// A cell with a requested frame rate is too slow if the machine's frame rate without waiting is below it.
-/// The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals
-/// skips this check. A cell without a requested rate (TimingSource::Native) is too slow if the machine's
-/// frame rate is below the protocol's fps_min. A cell with a showing of one frame is not judged. Under Native
-/// on a display with a fixed refresh, MeasuredReport::collapse is set if all cells reach 98 % of the refresh
-/// rate, unless the cells have one method and differ in effects. MeasuredReport::collapse is also set if the
-/// design has accelerated methods but tau never falls below zero in their cells: these methods then never
-/// accelerate.
+/// A cell with a requested frame rate is too slow if the machine's mean frame rate without waiting is below
+/// the requested rate. The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell
+/// without intervals skips this check. A cell without a requested rate (TimingSource::Native) is too slow if
+/// the machine's mean frame rate is below the protocol's fps_min. A cell with a showing of one frame is not
+/// judged.
+///
+/// MeasuredReport::collapse is set only under Native on a display with a fixed refresh, for one of two
+/// reasons. First: all cells reach 98 % of the refresh rate, and do not have one method with several levels
+/// of effects. Second: the design has accelerated methods, but tau never falls below zero in their cells, so
+/// that these methods never accelerate.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 
@@ -55,7 +59,7 @@ MeasuredReport judge_measured(const Protocol& protocol, const std::vector<Measur
 std::string stimulus_name(const StimulusSpec& what);
 /// The report as a table in text: a heading, then one line per cell.
 std::string measured_table(const MeasuredReport& report);
-/// The frame costs of each measured cell, to be stored with a session; omits cells without a mean time.
+/// The frame costs of the cells that have a mean time, to be stored with a session.
 std::vector<FrameCosts> frame_costs(const MeasuredReport& report);
 /// Expected duration of a showing on this machine, s, for each cell of the design; the planned duration if
 /// the cell was not measured.

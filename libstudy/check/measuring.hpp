@@ -10,15 +10,16 @@
 
 namespace study {
 
-/// Longest time that measure() takes for a stimulus, s, without the time to make the stimulus: the longest
-/// trial of its cells, but at least 5 s.
+/// Longest time that measure() takes for a stimulus, s, without the time to make and start the stimulus: the
+/// duration of the longest trial of its cells, but at least 5 s. The last step may end later.
 double longest_measuring_s(const Protocol& protocol, const MeasuredStimulus& what);
 
-/// Measures the steps of a trial of these cells from start_frame on; prepares and renders each step as a
-/// session does. Ends after the last step of the longest trial. After 5 s, also ends as soon as the
-/// measurement is behind the schedules of all cells whose trials have steps left. The first 5 s do not count
-/// for this, because a fluid's first steps are the fastest. refresh_hz: as for content_steps(). `each` (may
-/// be empty) is called after every step.
+/// Measures the times of content steps from start_frame on. Prepares and renders each step as a session does.
+/// Ends after the last step of the longest trial of `cells`. After 5 s, it also ends once it is behind the
+/// schedules of all cells whose trials have steps left. A cell without a frame rate counts as behind once its
+/// duration is over. Being behind does not count in the first 5 s, so that more is measured than the first
+/// steps of a fluid, which are the fastest. refresh_hz: as for content_steps(). `each` (may be empty) is
+/// called after every step.
 StepTimes measure(const Protocol& protocol, const std::vector<int>& cells, Stimulus& stimulus,
                   Display& display, Clock& clock, double refresh_hz, const std::function<void()>& each);
 

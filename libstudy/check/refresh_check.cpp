@@ -36,8 +36,8 @@ RefreshCheck check_refresh(const Protocol& protocol, double refresh_hz) {
   check.asked_hz = refresh_hz;
   check.refresh_hz = nominal_refresh(refresh_hz);
   for (const auto& [setting, cells] : checked_settings(protocol)) {
-    // The last argument is a seed: it affects only the order of the frame intervals and the positions of
-    // hitches. The report is about neither of them.
+    // The last argument is a seed: it orders the frame intervals and places the hitches. Trials use other
+    // seeds.
     check.verdicts.push_back(quantise(setting, protocol.pacing, check.refresh_hz, 0));
     const auto& verdict = check.verdicts.back();
     check.exact += verdict.feasibility == Feasibility::Exact;

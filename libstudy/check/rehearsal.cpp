@@ -10,9 +10,10 @@ namespace study {
 
 namespace {
 
-constexpr std::size_t last_steps = 30;  // the mean of the last 30 measured steps replaces unmeasured steps
+constexpr std::size_t last_steps = 30;
 
-/// Time that each content step takes, s: the measured one, or the mean of the last measured steps.
+/// Time of each content step, s: the measured time, or for a step that was not measured the mean of the last
+/// 30 measured times.
 class Costs {
  public:
   explicit Costs(const std::vector<double>& measured_s) : measured_s_(measured_s) {

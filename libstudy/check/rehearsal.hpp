@@ -32,10 +32,10 @@ struct Rehearsal {
   double showing_s = 0;         ///< duration from the first frame's onset to the end of the showing
 };
 
-/// Plays a trial of one setting on a virtual clock. A setting with a mean rate is played by play_trial() with
-/// `intervals_ns`, or with equal intervals if that list is empty. Another setting is played by play_native()
-/// with no frame shorter than the refresh period; refresh_hz 0: no bound. A step that was not measured takes
-/// the mean time of the last 30 measured steps.
+/// Plays a trial of one setting on a virtual clock. play_trial() plays a setting with a mean rate, with
+/// `intervals_ns` or, if this list is empty, with equal intervals. play_native() plays a setting without a
+/// mean rate; each frame then lasts at least a refresh period (no bound if refresh_hz is 0). A step that was
+/// not measured takes the mean time of the last 30 measured steps.
 Rehearsal rehearse(const Protocol& protocol, const FpsSetting& setting, const StepTimes& times,
                    const std::vector<std::int64_t>& intervals_ns, double refresh_hz);
 

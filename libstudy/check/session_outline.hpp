@@ -9,7 +9,7 @@
 
 namespace study {
 
-/// Assumed pace of a participant; it affects only the printed durations.
+/// Assumed pace of a participant, for the expected durations of a session.
 struct Pace {
   double answer_s = 0;     ///< time to answer one question, s
   double words_per_s = 0;  ///< reading speed, words/s; 0: a text takes only the block's minimum time
@@ -36,7 +36,8 @@ struct SessionOutline {
   Span trials_s;       ///< duration of the design's trials with the time for answers
 };
 
-/// The outline of a session with slot 0. Other slots show other cells but the same number of trials.
+/// The outline of the session at slot 0 of the assignment. Sessions at other slots show other cells but have
+/// the same number of trials.
 SessionOutline outline_session(const Protocol& protocol);
 
 /// One line about a block: "10 trials: stimulus 30 s, ask 5, rest 30 s".
@@ -52,7 +53,7 @@ struct PlannedBalance {
   /// and the number of people who see B first.
   int interval_difference = 0;
   int even = 1;                        ///< any multiple of this number of people is balanced
-  int even_below = 0, even_above = 0;  ///< multiples of `even` nearest to `planned`; 0: none below
+  int even_below = 0, even_above = 0;  ///< nearest multiples of `even`, <= and >= `planned`; below: 0 if none
 };
 PlannedBalance check_balance(const Protocol& protocol);
 

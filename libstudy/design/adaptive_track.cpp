@@ -124,7 +124,7 @@ int next_by_staircase(const Procedure& procedure, const std::vector<TrackStep>& 
   const auto positive = std::make_unique<bool[]>(steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) positive[i] = steps[i].positive;
   stats::StaircaseRules rules = procedure.rules;
-  rules.trials = 0;  // 0: no limit, because the plan sets the number of trials
+  rules.trials = 0;  // 0: the track never ends, because the plan sets the number of trials
   const double next = stats::replay_staircase(rules, {positive.get(), steps.size()}).stimuli.back();
   return std::clamp(static_cast<int>(std::lround(next)), 0, count - 1);
 }

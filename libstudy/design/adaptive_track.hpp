@@ -1,6 +1,7 @@
 #pragma once
-/// Chooses the cells of an adaptive procedure from the answers so far. The procedure's state is never stored.
-/// It is rebuilt from the answers, so a resumed session continues with the same cells.
+/// Chooses the cells of an adaptive procedure from the answers so far. A track is one run of the procedure;
+/// its cells differ only in the level of the adaptive factor. The state of a track is never stored: it is
+/// computed again from the answers, so that a resumed session continues with the same cells.
 
 #include <cstdint>
 #include <span>
@@ -19,9 +20,9 @@ struct TrackAnswer {
 };
 
 /// The trials of one group of cells in random order, with the planned number of trials for each track. Each
-/// trial holds the first cell of its track until chosen_trial() replaces it, before the trial is shown. In a
-/// design with pairs, each trial also has the standard; every second trial of a track shows the standard
-/// first.
+/// trial has the first cell of its track as a placeholder, which chosen_trial() replaces before the trial is
+/// shown. In a design with pairs, each trial also has the standard; every second trial of a track shows the
+/// standard first.
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 

@@ -12,13 +12,13 @@ namespace study {
 
 namespace {
 
-/// The groups and the row of the square that a slot of the assignment gives to a participant.
+/// The groups and the row of the square (Latin or Williams) that the assignment deals to a slot.
 struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
   int round = 0;            ///< number of complete passes through all sequences before this slot
-  /// Row of the square (Latin or Williams) for the first group; each later group takes the next row. Under
-  /// Assignment::Balanced, over all slots, each sequence of groups begins with each row equally often. In a
-  /// balanced design with pairs, each row also occurs equally often in each of the two interval orders.
+  /// Row of the square for the first group, modulo the number of rows; each later group takes the next row.
+  /// Under Assignment::Balanced, over all slots, each sequence of groups begins with each row equally often.
+  /// In a balanced design with pairs, each row also occurs equally often in each of the two interval orders.
   int row = 0;
 };
 
@@ -148,7 +148,7 @@ constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
-constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // between two repetitions of a trial
+constexpr std::uint64_t counters_per_repetition = 1ull << 22;
 
 class Planner {
   using Pairs = std::vector<std::pair<int, int>>;
@@ -190,14 +190,13 @@ class Planner {
 
   void add_page(int index) { plan_.units.push_back({0, index, {}}); }
 
-  /// Appends a trial to the plan, as a trial and as a unit.
   void add_trial(PlannedTrial trial) {
     trial.position = static_cast<int>(plan_.trials.size());
     plan_.units.push_back({0, trial.block, trial.position});
     plan_.trials.push_back(trial);
   }
 
-  /// Appends a trial of a Stimulus block, before it a break if one is due.
+  /// Appends a trial of a Stimulus block. If a break is due, appends the break before the trial.
   void add_trial_or_break(const PlannedTrial& trial) {
     const int every = block(trial.block).break_every;
     const auto before = std::count_if(plan_.trials.begin(), plan_.trials.end(),
@@ -227,7 +226,8 @@ class Planner {
     }
   }
 
-  /// The trials of an adaptive procedure, whose cells are chosen later.
+  /// Appends the trials of an adaptive procedure for the participant's g-th group (from 0). Their cells are
+  /// placeholders, which chosen_trial() replaces during the session.
   void add_tracks(int g, int index) {
     auto random = extra(index);
     const auto group =
@@ -344,7 +344,7 @@ class Planner {
     for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
       const Block& catches = protocol_.blocks[index];
       if (catches.kind != BlockKind::Catch) continue;
-      std::vector<int> places;  // positions of the trials after which a catch page may follow
+      std::vector<int> places;
       for (const auto& trial : plan_.trials) {
         if (block(trial.block).id == catches.like) places.push_back(trial.position);
       }

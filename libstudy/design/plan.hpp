@@ -36,7 +36,7 @@ struct Plan {
   std::vector<PlannedTrial> trials;  ///< in the order of their positions
 };
 
-/// Number of group sequences that the assignment gives to participants in turn. These are all sequences of
+/// Number of group sequences that the assignment deals to participants in turn. They are all sequences of
 /// groups with different scenes that spread n_* as evenly as possible. 1 under Assignment::PaperRandom.
 int sequence_count(const Protocol& protocol);
 
@@ -46,8 +46,8 @@ int sequence_count(const Protocol& protocol);
 int slot_count(const Protocol& protocol);
 
 /// The slot for the next participant: the lowest of the least used slots. `taken` lists the slots of all
-/// sessions that count (Store::taken_slots()). So the slot of a withdrawal or dropout is given out again
-/// first.
+/// sessions that count (Store::taken_slots()). So a slot of a person who withdrew or dropped out is assigned
+/// again before unused slots.
 int next_slot(const Protocol& protocol, const std::vector<int>& taken);
 
 /// The groups of cells that a participant in this slot sees, in order of presentation, as indices into

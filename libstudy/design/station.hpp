@@ -1,6 +1,6 @@
 #pragma once
-/// Several stations that record one study. Each station gives out its own share of the slots and uses its own
-/// seed. If they record equally many people, the stations together use the slots as one station would.
+/// Several stations that record one study. Each station assigns its own share of the slots and uses its own
+/// seed. If all stations record equally many people, they together use the slots as one station would.
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +28,7 @@ std::string station_text(const StationNumber& station);
 /// So participant code P01 gets different orders at two stations. Returns `seed` if there is no number.
 std::uint64_t seed_of_station(std::uint64_t seed, const std::optional<StationNumber>& station);
 
-/// The slot for the station's next participant. Station k of n gives out every n-th slot from slot k - 1 on,
+/// The slot for the station's next participant. Station k of n assigns every n-th slot from slot k - 1 on,
 /// modulo slot_count(). Of the least used of these slots, returns the first in this order. Without a station
 /// number, returns next_slot(protocol, taken).
 int next_slot(const Protocol& protocol, const std::vector<int>& taken,

@@ -6,7 +6,8 @@
 
 namespace study {
 
-/// The cause of a cut. A new cause needs a case in words_of() and an entry in the test over all causes.
+/// The cause of a cut. A new cause needs a case in words_of(). If it is the last one, set Last to it: tests
+/// run over all causes up to Last.
 enum class CutCause {
   Experimenter,  ///< the experimenter asked to show the trial again
   Participant,   ///< the participant opened the stop dialog and went on

@@ -10,14 +10,14 @@
 namespace study {
 
 /// The device that measures the samples. Mouse and head only approximate the gaze: people often look
-/// elsewhere.
+/// elsewhere than they point.
 enum class GazeOrigin { Tracker, Head, Mouse };
 
 /// A point of the picture: fractions of its width from the left edge and of its height from the top edge.
 using GazePoint = std::pair<double, double>;
 
-/// The combined (cyclopean) gaze ray of both eyes in the head's frame: x right, y up, z back; the origin is
-/// the midpoint of the eyes. HeadPose (headset.hpp) transforms the ray to the room.
+/// The combined (cyclopean) gaze ray of both eyes in the head's frame: x right, y up, z back. The frame's
+/// origin is the midpoint of the eyes. HeadPose (headset.hpp) transforms the ray to the room.
 struct GazeRay {
   std::array<double, 3> origin_m{};
   std::array<double, 3> direction{0, 0, -1};  ///< unit vector

@@ -35,8 +35,8 @@ struct HeadsetFacts {
 };
 
 /// Position (m) and orientation of the midpoint of the eyes in the runtime's room frame: x right, y up, z
-/// back. A position or orientation that is not valid is unknown. One that is valid but not tracked is an
-/// estimate of the runtime.
+/// back. A position or orientation that is not valid is unknown. A valid position or orientation that is not
+/// tracked is an estimate of the runtime.
 struct HeadPose {
   std::array<double, 3> place_m{};
   std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w

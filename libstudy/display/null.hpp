@@ -1,6 +1,5 @@
 #pragma once
-/// A stimulus and a display that show nothing. With them, a session runs without a fluid and without a
-/// screen.
+/// A stimulus and a display that show nothing, for sessions without a fluid and without a screen.
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"

@@ -11,8 +11,10 @@
 
 namespace study {
 
-/// How often each safety rule of the fluid solver acted in one frame; the database schema explains each
-/// count.
+/// How often each safety rule of the fluid solver acted in one frame: particle-substeps with limited speed,
+/// neighbour pairs at zero distance, particles with NaN or infinity, neighbours that found no room in a list,
+/// particle-substeps pushed back inside a wall, layers of water that a nozzle left out, particles without a
+/// finite saliency, and eyes without a valid gaze.
 struct FrameGuards {
   std::int64_t speed_limited = 0, coincident_pairs = 0, not_finite = 0, neighbours_dropped = 0;
   std::int64_t wall_projected = 0, nozzle_waited = 0, saliency_not_finite = 0, gaze_lost = 0;
@@ -20,16 +22,18 @@ struct FrameGuards {
 
 /// Parameters of temporal acceleration in one frame, for a fluid that skips particles.
 struct FrameTolerance {
-  /// Tolerance tau = mu - a exp(b delta) (Eq. 11 of the paper), frames/s; none: no frame time was known yet.
+  /// Tolerance tau = mu - a exp(b delta) (Eq. 11 of the paper), frames/s, with a and b of stats::PtpeModel;
+  /// none: no frame time was known yet.
   std::optional<double> tau_fps;
   double beta = 1;             ///< lowest probability that a particle is solved, [0, 1]
   double active_fraction = 1;  ///< share of particles that were solved, [0, 1]
-  /// mu and delta: mean and standard deviation of the frame rate, frames/s; none: tau is fixed or not known.
+  /// Mean mu and standard deviation delta of the frame rate, frames/s; none: tau is fixed, or no frame time
+  /// was known yet.
   std::optional<double> mu_fps, delta_fps;
 };
 
-/// Facts about a frame from the stimulus that made it, stored in every frame record. An empty member was
-/// not measured.
+/// Facts about a frame, from the stimulus that made the frame. Every frame record stores them. An empty
+/// member was not measured.
 struct FrameFacts {
   double simulation_time_s = 0;
   std::vector<std::int64_t> particles_by_level;  ///< finest first
@@ -88,10 +92,10 @@ class Display {
   /// k / measured_hz() seconds.
   virtual double measured_hz() const { return refresh_hz(); }
   /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A window on
-  /// a screen with a fixed refresh returns the middle between two refreshes, so that jitter moves no frame
-  /// into another period. A headset returns the display time of a slot.
+  /// a screen with a fixed refresh returns the middle between two refreshes: small delays then move no frame
+  /// into another refresh period. A headset returns the display time of a slot.
   virtual std::int64_t first_onset(std::int64_t earliest_ns) const { return earliest_ns; }
-  /// Draws the stimulus off-screen in advance, to keep present() short. A display may do nothing here.
+  /// Draws the stimulus off-screen in advance, so that present() is short. A display may do nothing here.
   virtual void render(Stimulus& stimulus) = 0;
   /// Shows the rendered frame at scheduled_ns or as soon after as possible. Waits on the session's clock and
   /// returns once the frame was submitted.

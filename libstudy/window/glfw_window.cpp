@@ -25,7 +25,6 @@ std::int64_t steady_ns() {
       .count();
 }
 
-/// True once the connection to the X server broke.
 std::atomic<bool> display_lost = false;
 
 [[noreturn]] void fail(const std::string& problem, const std::string& mend) {

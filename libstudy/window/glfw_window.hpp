@@ -39,7 +39,7 @@ class GlfwWindow {
 
   GLFWwindow* get() const { return window_; }
   bool asked_to_close() const;
-  /// Size of the framebuffer, px; 0 if minimised.
+  /// Size of the framebuffer, px; may be 0 if minimised.
   struct Size {
     int width = 0, height = 0;
   };
@@ -59,8 +59,8 @@ class GlfwWindow {
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
   /// GLFW codes that the keyboard repeated since the last call, for keys held down.
   std::vector<int> take_repeats() { return std::exchange(repeats_, {}); }
-  /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread
-  /// may call it.
+  /// Seconds since the last key, mouse button or mouse movement, or since the window was opened. Callable
+  /// from any thread.
   double idle_s() const;
   /// True if the window is minimised, or was minimised at any time since the last call: the participant could
   /// not see it then.
@@ -83,7 +83,8 @@ class GlfwWindow {
   std::atomic<std::int64_t> last_input_ns_;  ///< steady clock
 };
 
-/// State of a compositor between windows and the screen. find_compositor() needs an open window.
+/// Whether a compositor runs, the program that combines all windows into the picture on the screen.
+/// find_compositor() needs an open window.
 enum class Compositor { Unknown, Absent, Running };
 Compositor find_compositor();
 

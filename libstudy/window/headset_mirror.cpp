@@ -148,7 +148,8 @@ bool HeadsetMirror::wait(std::chrono::steady_clock::duration time) {
   return !changed_.wait_for(lock, time, [this] { return over_; });
 }
 
-/// Body of the mirror's thread. All GLFW calls come from it: X does not require the program's main thread.
+/// Body of the mirror's thread, which makes all GLFW calls: X11 does not require that the main thread makes
+/// them.
 void HeadsetMirror::run(std::promise<void> opened) {
   std::unique_ptr<PictureWindow> window;
   std::unique_ptr<PictureTaker> taker;
