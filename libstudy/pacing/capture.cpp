@@ -127,7 +127,7 @@ class CaptureReader {
   }
 
   /// The index of the column with this name; none if no column has the name. base::Error if two columns have
-  /// the name, or if no column has the name that the option --column gives.
+  /// the name, or if no column has the name in wanted_, which the user chose.
   std::optional<std::size_t> place_of(const std::string& wanted) const {
     std::optional<std::size_t> found;
     std::vector<std::string> shown;

@@ -62,7 +62,7 @@ double root_of(const Problem& problem, const std::function<double(double)>& exce
   }
 }
 
-/// Frame rates low + scale * y, where y are the distances from the lower bound in standard deviations.
+/// Frame rates low + scale * y. y: distance from the lower bound in standard deviations of the parent normal.
 std::vector<double> scaled(const Problem& problem, std::vector<double> strata, double scale) {
   for (double& y : strata) y = problem.low + scale * y;
   return strata;
@@ -79,7 +79,8 @@ std::vector<double> solve_open(const Problem& problem) {
     return scaled(problem, std::move(strata), scale);
   };
   const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
-  // with a parent mean this many sd below the bound, the distribution is exponential
+  // With the parent mean this many standard deviations below the bound, the distribution is practically
+  // exponential.
   const double exponential = 1e4;
   const double bell = -10 * (problem.setting.mean + sd) / sd;
   if (excess(exponential) > 0) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The frame rates of a schedule, with exact mean and standard deviation, in ascending order. ordered() then
-/// puts them in the order of display (frame_order.hpp).
+/// The frame rates of a schedule with exact mean and standard deviation, in ascending order. ordered()
+/// (frame_order.hpp) then puts them in the order in which they are shown.
 
 #include <vector>
 
@@ -13,10 +13,10 @@ namespace study {
 inline constexpr double least_sd_fps = 1e-3;
 
 /// N = frame_count(setting) instantaneous rates, frames/s, ascending: stratified quantiles of a truncated
-/// normal with the requested mean (harmonic or arithmetic, as the rules say) and population standard
-/// deviation to 1e-9 relative. The normal is truncated to the range from the larger of fps_min and 1000 /
-/// max_interval_ms to fps_max. If the standard deviation is 0, all rates equal the mean. base::Error naming
-/// the setting if there is no solution.
+/// normal, with the requested mean (harmonic or arithmetic, as the rules specify) and population standard
+/// deviation to 1e-9 relative. The normal is truncated below at the larger of fps_min and 1000 /
+/// max_interval_ms, and above at fps_max, if any. If the standard deviation is 0, all rates equal the mean.
+/// base::Error naming the setting if there is no solution.
 std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& rules);
 
 /// The harmonic or arithmetic mean of the rates, frames/s.

@@ -21,8 +21,8 @@ std::vector<double> gaussian(std::size_t n, RandomStream& random) {
   return out;
 }
 
-/// Orders `sorted` (ascending) so that its ranks equal the ranks of `pattern`; `tie` ranks equal entries of
-/// `pattern`.
+/// Orders `sorted` (ascending) so that its ranks equal the ranks of `pattern`. Among equal entries of
+/// `pattern`, the one with the smaller entry of `tie` ranks lower.
 std::vector<double> by_ranks(const std::vector<double>& sorted, const std::vector<double>& pattern,
                              const std::vector<std::uint64_t>& tie) {
   std::vector<std::size_t> place(pattern.size());
@@ -48,8 +48,8 @@ std::vector<double> ar1_order(const std::vector<double>& sorted, double wished, 
   std::vector<std::uint64_t> tie(sorted.size());
   for (auto& value : tie) value = random.bits();
   const auto at = [&](double coefficient) { return by_ranks(sorted, ar1_pattern(noise, coefficient), tie); };
-  // The correlation rises with the coefficient, except for small jumps where two ranks swap. Bisects the
-  // coefficient and keeps the order whose correlation is nearest to `wished`.
+  // Bisects the coefficient and keeps the order whose correlation is nearest to `wished`. The correlation
+  // rises with the coefficient, except for small jumps where two ranks swap.
   double low = -0.9999, high = 0.9999;
   auto best = at(wished);
   for (int i = 0; i < 60; ++i) {

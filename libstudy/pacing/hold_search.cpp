@@ -8,8 +8,8 @@ namespace study {
 
 namespace {
 
-/// A list of holds, stored as the number of frames held at most k periods for each k, with the sums that give
-/// mean and standard deviation of its rates.
+/// A list of holds, stored for each k as the number of frames held at most k periods, with the sums from
+/// which mean() and sd() follow.
 class Holds {
  public:
   explicit Holds(const HoldTarget& target)
@@ -50,8 +50,8 @@ class Holds {
     return by > 0 ? counts_[at] < counts_[at + 1] : counts_[at] > (edge ? counts_[at - 1] : 0);
   }
 
-  /// Moves one frame across an edge (see edges()): by = 1 shortens the frame's hold by a period, -1 lengthens
-  /// it.
+  /// Moves one frame across an edge (see edges()): by = 1 shortens the hold of the frame by a period, by = -1
+  /// lengthens it.
   void move(int edge, int by) {
     auto& count = counts_[static_cast<std::size_t>(edge)];
     const long double fast = rate(edge), slow = rate(edge + 1);
@@ -108,7 +108,7 @@ class Holds {
 /// Sets the holds that minimise sum_i (f_i - x_i)^2 + spread sum_i (f_i - m)^2 - 2 price sum_i f_i. f_i: rate
 /// of frame i; x_i: its target rate; m: target mean. For a harmonic mean, the last term is + 2 price (total
 /// of periods) instead. Of two successive holds, frame i gets the shorter one if x_i is above the threshold
-/// between them. Updates mean() only; recount() updates the other sums.
+/// between the two. Updates only the sums for mean(); recount() updates all.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -124,7 +124,7 @@ void place(Holds& holds, const HoldTarget& target, double spread, double price) 
   holds.recount_for_mean();
 }
 
-/// Bisects `price` of place() until the target mean is reached; a higher price shortens holds.
+/// Bisects `price` of place() 60 times towards the target mean; a higher price shortens holds.
 void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   double low = -1, high = 1;
   const auto mean_at = [&](double price) {
@@ -141,7 +141,8 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   holds.recount();
 }
 
-/// Bisects `spread` of place() until the standard deviation is within its tolerance of the target.
+/// Bisects `spread` of place() up to 40 times, until the standard deviation is within its tolerance of the
+/// target.
 void place_with_moments(Holds& holds, const HoldTarget& target) {
   const auto sd_at = [&](double log_weight) {
     place_with_mean(holds, target, std::exp(log_weight) - 1);
@@ -247,9 +248,9 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
           total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
 }
 
-/// Calls descend() from every list of two different holds, one at most and one at least the mean hold: such
-/// lists have the extreme standard deviations. Stops once the excess is 0. Returns the list with the least
-/// excess, perhaps the given `best`.
+/// Calls descend() on every list of two different holds, one at most and one at least as long as the mean
+/// hold, because such lists have the extreme standard deviations. Stops once the excess is 0. Returns the
+/// list with the least excess of these and of `best`.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);
@@ -282,7 +283,7 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
   if (best.excess == 0) return best;
   if (total > 0) return from_pairs(target, total, std::move(best));
   // If the total is free, the search may stop at a list where every change improves one moment and worsens
-  // the other. So it is repeated with a high weight of the mean.
+  // the other. So the search is repeated with a weight of 1000 for the error of the mean.
   for (Holds* start : {&holds, &strict}) {
     start->weigh_mean(1000);
     descend(*start, total);
@@ -298,7 +299,7 @@ namespace {
 /// Calls f(fast rate, slow rate, fraction of frames at the fast rate) for every pair of holds that can have
 /// the target mean. Rates in frames/s.
 void for_each_pair(const HoldTarget& target, const std::function<void(double, double, double)>& f) {
-  const auto value = [&](int hold) {  // quantity whose average over the frames gives the mean
+  const auto value = [&](int hold) {  // the frames' average of this quantity determines the mean rate
     return target.mean_kind == FpsMean::Harmonic ? static_cast<double>(hold) : target.refresh_hz / hold;
   };
   const double wished = target.mean_kind == FpsMean::Harmonic ? target.refresh_hz / target.mean : target.mean;

@@ -34,7 +34,9 @@ struct HoldList {
   std::vector<int> holds;
   double mean = 0, sd = 0;  ///< of the rates, frames/s; mean of the target's mean_kind
   double distance = 0;      ///< root of the objective, frames/s
-  double excess = 0;        ///< sum of the errors of mean and sd beyond their tolerances; 0: both met
+  /// Sum of the errors of mean and sd beyond their tolerances; the error of the mean may count 1000-fold. 0:
+  /// mean and sd are within their tolerances.
+  double excess = 0;
 };
 
 /// The best list found whose holds sum to `total` periods (this fixes a harmonic mean); total = 0: any sum.

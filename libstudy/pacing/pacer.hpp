@@ -46,18 +46,18 @@ struct FrameRecord {
   FrameFacts facts;
 };
 
-/// All frames of a trial, and the end of the last frame: N frames then give N intervals.
+/// All frames of a trial, and the end of the last frame, so that N frames have N intervals.
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
-  /// set if the trial overran: number of frames not shown; 0 without a schedule
+  /// Set if the trial overran and was cut: the number of frames not shown; 0 without a schedule.
   std::optional<std::int64_t> cut;
 };
 
 /// Timing bounds of a trial while it is shown.
 struct ShowingBounds {
   std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled exceeds this
-  std::int64_t overrun_ns = 0;     ///< a trial is cut this long after its planned end
+  std::int64_t overrun_ns = 0;     ///< a frame ready later than this after the planned end cuts the trial
 };
 
 /// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
@@ -73,7 +73,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
 
 /// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
 /// the first frame. scheduled_ns is the instant at which a frame was ready; no frame is late. The last frame
-/// stays on until another frame is ready, which is not shown. If this takes more than overrun_ns beyond
+/// stays on until one more frame is ready, which is not shown. If that is more than overrun_ns after
 /// `duration_s`, the trial counts as cut. base::Error if the clock does not advance while a frame is made
 /// (VirtualClock), or if the content ends before start_frame.
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
@@ -113,7 +113,7 @@ struct TimingVerdict {
   /// Mean absolute difference between the content's step and the interval of a frame, ms; none if the content
   /// follows frames instead of time.
   std::optional<double> animation_error_ms;
-  double lag1 = 0;  ///< lag-1 autocorrelation of the realised rates; see lag1()
+  double lag1 = 0;  ///< lag-1 autocorrelation of the realised rates
   std::int64_t late = 0;
   double worst_late_ms = 0;
   bool cut = false;    ///< true: cut, because the trial overran
@@ -132,7 +132,8 @@ TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, c
                           const TimingTolerance& tolerance, TimingGrade grade);
 
 /// Timing of a trial without a schedule: realised moments and intervals; the nominal moments are 0. The
-/// verdict is fail for a cut trial; otherwise it has no meaning. base::Error if no frame was shown.
+/// verdict is fail for a cut trial and pass for any other, whatever its timing. base::Error if no frame was
+/// shown.
 TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade);
 
 /// "pass", "degraded" or "fail".

@@ -9,8 +9,8 @@ namespace study {
 
 namespace {
 
-// Least time from the end of the first frame's rendering to its deadline: long enough for the usual wait of
-// present().
+// Least time from the end of the first frame's rendering to its deadline, ns, so that present() can meet this
+// deadline.
 constexpr std::int64_t lead_ns = 2'000'000;
 
 /// Computes which content step a frame shows.
@@ -44,7 +44,8 @@ class ContentCourse {
     const double moved_s = (index % 2 == 1 ? rules_.animation_error_s : 0) - rules_.latency_s;
     const double elapsed =
         std::max(0.0, 1e-9 * static_cast<double>(onset_ns) + moved_s) / rules_.content_step_s;
-    // Adds a millionth of a step: an onset at the start of a step may be rounded into the step before.
+    // Adds a millionth of a step, because rounding may put an onset at the start of a step into the step
+    // before.
     const std::int64_t gone =
         rules_.real_time ? std::max(gone_, static_cast<std::int64_t>(elapsed + 1e-6)) : index;
     gone_ = gone;
@@ -65,7 +66,6 @@ class ContentCourse {
   std::int64_t gone_ = 0;  ///< content steps since the first frame; a rewind does not reset it
 };
 
-/// Prepares and renders frame `index` of a trial.
 FrameRecord make_frame(std::int64_t index, std::int64_t onset_ns, ContentCourse& course, Stimulus& stimulus,
                        Display& display) {
   FrameRecord record;

@@ -13,7 +13,7 @@ namespace study {
 enum class ProfileKind {
   Moments,  ///< mean_fps and sd_fps, as in protocols of format 2
   Hitches,  ///< a steady rate; one frame in each period stays on for hitch_ms
-  Floor,    ///< one frame in 20 lasts 1/low_fps; the others share the rest of the time evenly
+  Floor,    ///< 5 % of the frames (rounded up) last 1/low_fps; the others are equally long
   Trace     ///< recorded frame times, in their order, repeated or cut to the length of the stimulus
 };
 
@@ -23,7 +23,7 @@ inline constexpr std::size_t most_trace_frames = 100000;
 
 struct TimingProfile {
   ProfileKind kind = ProfileKind::Moments;
-  double mean_fps = 60;  ///< Moments, Floor: harmonic mean. Hitches: rate between hitches. Frames/s
+  double mean_fps = 60;  ///< frames/s; Moments: mean; Floor: harmonic mean; Hitches: rate between hitches
   double sd_fps = 0;     ///< Moments: standard deviation, frames/s
   double hitch_ms = 0;   ///< Hitches: time for which the long frame stays on; at least 1000 / mean_fps
   double period_s = 1;   ///< Hitches: period, s; one hitch in each, in its middle when jitter is 0

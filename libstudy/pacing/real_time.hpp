@@ -6,11 +6,11 @@
 namespace study {
 
 /// During its lifetime, the calling thread has a timer slack of 1 ns and, where the system allows it
-/// (RLIMIT_RTPRIO or CAP_SYS_NICE), SCHED_FIFO with the lowest real-time priority. Without SCHED_FIFO it asks
-/// for the nice level -10, a raised priority. If /dev/cpu_dma_latency can be opened, processors avoid idle
-/// states that are slow to leave. Threads that the calling thread starts do not inherit SCHED_FIFO. A refused
-/// request is no error: note() lists the granted and refused requests for the session's record. Memory is not
-/// locked, because this would pin a mapped bake as well.
+/// (RLIMIT_RTPRIO or CAP_SYS_NICE), the scheduling policy SCHED_FIFO at its lowest real-time priority. If
+/// SCHED_FIFO is refused, requests the nice level -10, a raised priority. If /dev/cpu_dma_latency can be
+/// opened, processors avoid idle states that are slow to leave. Threads that the calling thread starts do not
+/// inherit SCHED_FIFO. A refused request is no error: note() lists the granted and refused requests for the
+/// session's record. Memory is not locked, because this would pin a mapped bake as well.
 class RealTimeScheduling {
  public:
   RealTimeScheduling();

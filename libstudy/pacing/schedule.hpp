@@ -56,7 +56,8 @@ std::int64_t frame_count(const FpsSetting& setting);
 
 /// A schedule. Interval i is the time for which frame i is shown. If compile_schedule() makes it from a mean
 /// and a standard deviation, the relative errors of both are at most 1e-9 in intervals_s and at most 1e-6 in
-/// intervals_ns. There the error of the standard deviation is relative to at least 1 frame/s.
+/// intervals_ns. If the standard deviation is below 1 frame/s, its error in intervals_ns is at most 1e-6
+/// frames/s.
 struct Schedule {
   std::vector<double> intervals_s;
   std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds
@@ -77,8 +78,10 @@ struct RefreshVerdict {
   std::int64_t frames = 0;  ///< number N of frames
   double mean = 0;          ///< of the best list, frames/s; harmonic for a pattern, else as the rules say
   double sd = 0;            ///< of the best list, frames/s
-  double distance = 0;      ///< 2-Wasserstein distance to the unquantised rates, frames/s
-  int longest_hold = 0;     ///< longest hold, refresh periods
+  /// 2-Wasserstein distance to the unquantised rates, frames/s; for a pattern, the root mean square change of
+  /// the frames' rates.
+  double distance = 0;
+  int longest_hold = 0;  ///< longest hold, refresh periods
   /// Number of refresh periods for each frame, in display order; empty if unreachable.
   std::vector<int> holds;
   std::string reason;  ///< why `feasibility` is not Exact

@@ -56,7 +56,7 @@ double quantile(double cut, double target, double guess) {
 }  // namespace
 
 std::vector<double> truncated_normal_strata(double cut, double width, std::size_t n) {
-  // If most of the mass is in the lower tail, reflects the interval: the formulas are exact for the upper
+  // If the middle of the interval is below 0, reflects the interval: the formulas are accurate in the upper
   // tail.
   const bool reflected = std::isfinite(width) && 2 * cut + width < 0;
   const double from = reflected ? -(cut + width) : cut;
