@@ -8,9 +8,9 @@
 
 namespace study {
 
-/// Adds a sample at the start of a showing and one for each mouse movement that the window processes, because
-/// the mouse reports only changes. The window processes movements after each picture. Sample times are the
-/// times of processing: the system gives no time stamp that converts to the session's clock.
+/// start() adds a sample of the mouse's current position, and each mouse movement adds one, because the mouse
+/// reports only changes. The window processes movements after each picture. Sample times are the times of
+/// processing: the system's time stamps do not convert to the session's clock.
 class MouseGaze final : public GazeSource {
  public:
   /// Position of the mouse in the picture; none: outside the picture.

@@ -1,6 +1,6 @@
 #pragma once
 /// State of a participant's page: answers, effect of keys and clicks, and when the page can be confirmed. The
-/// state uses no window and no clock: callers pass times, ns on the session's clock.
+/// state has no window and no clock: callers pass times, ns on the session's clock.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +25,8 @@ struct PageItem {
 };
 
 /// State of one page. No answer is preselected. Answers can be changed until the page is confirmed.
-/// Confirming needs an answer to each required question. Input in the first 300 ms is ignored, except by a
-/// page with a Reaction, which react() or tick() confirms.
+/// Confirming needs an answer to each required question, and no invalid answer. Input in the first 300 ms is
+/// ignored, except on a page with a Reaction, which react() or tick() confirms.
 class PageState {
  public:
   static constexpr std::int64_t guard_ns = 300'000'000;
@@ -38,16 +38,17 @@ class PageState {
 
   /// Sets the input device of the following calls; default: keyboard.
   void use(AnswerInput input) { input_ = input; }
-  /// Handles a key. Enter chooses the score that the arrow keys mark; pressed again, it goes to the next
-  /// question, or confirms a page with a single question; at the button to go on, it confirms the page. Enter
-  /// does nothing at a required question without a valid answer. On a Vas (visual analogue scale), the arrow
-  /// keys set the mark: Left and Right move it by 1 % of the line, Up, Down, FarLeft and FarRight by 10 %.
-  /// The first of these keys sets the mark at an end of the line.
+  /// Handles a key. Enter chooses the score that the arrow keys mark. If this score is chosen already, Enter
+  /// goes to the next question, or confirms a page with a single question; at the button to go on, Enter
+  /// confirms the page. Enter does nothing at a required question without a valid answer and at an invalid
+  /// number. On a Vas (visual analogue scale), the arrow keys set the mark: Left and Right move it by 1 % of
+  /// the line, Up, Down, FarLeft and FarRight by 10 %, but at least by one score. The first of these keys
+  /// sets the mark at an end of the line.
   void press(PageKey key, std::int64_t now_ns);
   /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);
   void minus(std::int64_t now_ns);
-  /// Handles a typed letter: chooses the answer of a YesNo; see letter_of().
+  /// Handles a typed letter: chooses the answer of a YesNo that has this letter as its key (letter_of()).
   void letter(const std::string& letter, std::int64_t now_ns);
   /// Handles a press of any key, button or trigger: answers a Reaction and confirms its page.
   void react(std::int64_t now_ns);
@@ -56,7 +57,7 @@ class PageState {
   void click(std::size_t question, int score, std::int64_t now_ns);
   /// Focuses a question without answering it.
   void click_question(std::size_t question, std::int64_t now_ns);
-  /// Confirms the page, or focuses the first question that prevents it.
+  /// Confirms the page, or focuses the first question that prevents the confirmation.
   void click_confirm(std::int64_t now_ns);
   /// Appends letters to the focused Text. PageKey::Erase removes the last letter.
   void type(const std::string& letters, std::int64_t now_ns);
@@ -75,8 +76,8 @@ class PageState {
   bool timed() const;
   /// True if keys act on a Vas.
   bool on_line() const;
-  /// True if input is ignored: in the first 300 ms, in the 300 ms after leave_out(), and after the
-  /// confirmation.
+  /// True if input is ignored: in the first 300 ms (not on a page with a Reaction), in the 300 ms after
+  /// leave_out(), and after the confirmation.
   bool guarded(std::int64_t now_ns) const { return confirmed() || now_ns - guarded_from_ns_ < guard_ns; }
   /// True if the question has a valid answer.
   bool answered(std::size_t question) const;

@@ -21,7 +21,7 @@ bool is_in(const std::array<Range, n>& ranges, char32_t c) {
                      [c](const Range& one) { return one.first <= c && c <= one.last; });
 }
 
-// Blocks of the Unicode Standard, version 15.
+// Ranges of code points, after the Unicode Standard, version 15.
 constexpr std::array right_to_left{
     Range{0x0590, 0x08FF},  // Hebrew, Arabic, Syriac, Thaana, N'Ko, Samaritan, Mandaic
     Range{0x200F, 0x200F},  // right-to-left mark

@@ -1,5 +1,6 @@
 #pragma once
-/// The characters of a participant's pages: which scripts are drawn correctly, and which fonts they need.
+/// The characters of a participant's pages: which of them the pages draw correctly, and which package has a
+/// font for them.
 
 #include <string>
 #include <vector>

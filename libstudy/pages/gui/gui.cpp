@@ -26,8 +26,7 @@ const unsigned background = IM_COL32(38, 38, 40, 255), panel = IM_COL32(48, 48, 
 
 namespace {
 
-// Heights of the type as fractions of the screen's height. Body text is 32 px high on a screen of 1080 px,
-// about 0.6 degrees at arm's length.
+// Heights of the fonts as fractions of the screen's height. Body text is 32 px high on a screen of 1080 px.
 constexpr float body_share = 0.0296F, title_share = 0.045F, huge_share = 0.13F;
 
 const ImWchar digits[] = {0x20, 0x3A, 0};
@@ -65,7 +64,7 @@ TypeSizes type_for_x_height(float x_height_px) {
   const ImWchar letter[] = {'x', 'x', 0};
   const ImFont* font = add_font(atlas, tried, letter);
   atlas.Build();
-  // Adds 1 px, because glyphs end at whole pixels.
+  // Adds 1 px, because glyphs are rounded to whole pixels.
   const float body = std::ceil(tried * (x_height_px + 1) / x_height_of(*font));
   return {body, std::round(body * title_share / body_share), std::round(body * huge_share / body_share)};
 }
@@ -158,7 +157,7 @@ bool opens(char32_t c) {
          std::u32string_view::npos;
 }
 
-/// An unbreakable part of a text; `spaced`: a space precedes it.
+/// An unbreakable part of a text. spaced: a space precedes the part.
 struct Part {
   std::string text;
   bool spaced = false;
@@ -211,7 +210,8 @@ float draw_centred(const std::string& words, ImVec2 at, float width, unsigned co
 
 namespace {
 
-/// Draws each line of a text centred at at.x, empty lines with extra space; returns the y below the text.
+/// Draws each line of a text centred at at.x; an empty line adds half a line of space. Returns the y below
+/// the text.
 float draw_paragraphs(const std::string& text, ImVec2 at, float width, unsigned colour) {
   std::istringstream all(text);
   for (std::string line; std::getline(all, line);) {
@@ -240,8 +240,8 @@ float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWord
   return y;
 }
 
-/// Draws the time left and the words in the middle of the window. The digits are small if large ones leave
-/// too little space for the words.
+/// Draws the time left (null: none) and the words in the middle of the window. The digits are small if large
+/// digits leave too little space for the words.
 void draw_on_black(Gui& gui, const char* left, const PauseWords& words, const std::string& corner) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0, 0});

@@ -1,6 +1,6 @@
 #pragma once
-/// Dear ImGui on any framebuffer: large type on dark grey; custom widgets where those of Dear ImGui are too
-/// small.
+/// Dear ImGui on any framebuffer: large type on dark grey, and custom widgets instead of the small ones of
+/// Dear ImGui.
 
 #include <array>
 #include <functional>
@@ -33,21 +33,21 @@ class Gui {
  public:
   /// The surface on which the pages are drawn, and its input.
   struct Host {
-    /// Called before each picture: writes size, pointer and typed keys to Dear ImGui's IO.
+    /// Called before each picture. Writes size, pointer and typed keys to Dear ImGui's ImGuiIO.
     std::function<void()> look;
     std::function<unsigned()> framebuffer;  ///< OpenGL framebuffer object for the next picture
     /// True if the participant has no keyboard or mouse: the page then shows keys, arrows and a stop button.
     bool by_hand = false;
   };
 
-  /// An OpenGL context must be current here and in each call. characters: those of all pages that will be
-  /// drawn.
+  /// An OpenGL context must be current here and in each later call. characters: all characters that the pages
+  /// will draw.
   Gui(const TypeSizes& type, Host host, const PageCharacters& characters = {});
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Clears the framebuffer to a colour and begins a picture; end() draws it.
+  /// Clears the framebuffer to a colour and begins a picture, which end() draws.
   void begin(unsigned clear_colour);
   void end();
   /// Draws the last picture again, with all colours multiplied by `share`, 0 to 1. Repeated calls multiply:
@@ -61,7 +61,7 @@ class Gui {
   float x_height_px() const;                  ///< of body text
   bool by_hand() const { return host_.by_hand; }
 
-  /// Called while a picture is drawn: point_at() by the target under the pointer, wish_stop() by a click on
+  /// Call while a picture is drawn: point_at() for the target under the pointer, wish_stop() for a click on
   /// Stop.
   void point_at(unsigned target) { pointed_at_ = target; }
   void wish_stop() { stop_ = true; }

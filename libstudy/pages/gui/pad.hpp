@@ -9,8 +9,8 @@
 
 namespace study {
 
-/// Has digits for a Number, and letters, digits and punctuation for a Text. The arrow keys move a marker
-/// between the pad's keys.
+/// Has digits for a Number, and letters, digits and punctuation for a Text. Arrow keys move a marker over the
+/// keys of the pad.
 class Pad {
  public:
   static constexpr const char* erase = "\u2190";
@@ -22,9 +22,9 @@ class Pad {
   bool marked(std::size_t row, std::size_t column) const { return row_ == row + 1 && column_ == column; }
   /// Types a key into the focused question.
   void type(const std::string& key, PageState& state, std::int64_t now_ns) const;
-  /// Arrow keys move the marker; Enter types the marked key. Returns false if the pad does not use the key:
-  /// Enter or Up without a marker, an arrow that moves the marker off the pad at its top or bottom, and any
-  /// other key.
+  /// Arrow keys move the marker; Enter types the marked key. Returns false for a key that the pad does not
+  /// use: Enter or Up without a marker, an arrow that moves the marker off the pad at its top or bottom, and
+  /// any other key.
   bool press(PageKey key, PageState& state, std::int64_t now_ns);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Fonts of the pages: a system font, and others for characters that it lacks.
+/// Fonts of the pages: a system font, and more fonts for the characters that this font lacks.
 
 #include <string>
 #include <vector>
@@ -19,7 +19,8 @@ struct PageCharacters {
 };
 PageCharacters page_characters(const Protocol& protocol);
 
-/// The file of $VIP_FONT, else of a system font; "" if there is none: Dear ImGui's default font is then used.
+/// The file of $VIP_FONT if it is set, else the first system font of a fixed list. "" if there is no such
+/// file: Dear ImGui's default font is then used.
 std::string find_font();
 
 /// A font's file, and the font's index in a file with several fonts.
@@ -27,14 +28,15 @@ struct FontFile {
   std::string path;
   int number = 0;
 };
-/// Fonts for the needed characters: first find_font(). If there is none, or if a character is not a usual one
-/// (see PageType), system fonts follow. fontconfig adds fonts until they have all needed characters or no
-/// other font has a missing one. Without fontconfig, all installed fonts of a fixed list follow.
+/// Fonts for the needed characters: first find_font(). If there is no such font, or if a character is not a
+/// usual one (see PageType), system fonts follow. fontconfig adds fonts until the added fonts have all needed
+/// characters, or no other font has one that is missing. Without fontconfig, all installed fonts of a fixed
+/// list follow.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
-/// Adds the pages' fonts to an atlas of Dear ImGui, which the caller then builds. They have the usual
-/// characters (Latin, Greek, Cyrillic, punctuation, arrows, signs) and those of `needed`. `size`: height, px
-/// from the highest ascent to the lowest descent.
+/// Adds the pages' fonts to a font atlas of Dear ImGui, which the caller then builds. The fonts get glyphs
+/// for the usual characters (Latin, Greek, Cyrillic, punctuation, arrows, signs) and for those of `needed`.
+/// `size`: height, px from the highest ascent to the lowest descent.
 class PageType {
  public:
   explicit PageType(const PageCharacters& needed);
@@ -44,12 +46,12 @@ class PageType {
 
  private:
   std::vector<FontFile> files_;
-  std::vector<unsigned short> ranges_;  ///< of characters, for Dear ImGui; must outlive the atlas's build
+  std::vector<unsigned short> ranges_;  ///< first and last characters; must outlive the atlas's build
 };
 
-/// Checks that the pages can draw all texts of a protocol. base::Error otherwise: names the text, the
-/// character, and either a package with a font or why no font helps. A program built without Dear ImGui has
-/// no pages and never throws.
+/// base::Error unless the pages can draw all texts of a protocol. The error names the text, the character,
+/// and either a package with a font or the reason why no font helps. Does nothing in a program built without
+/// Dear ImGui, which has no pages.
 void check_pages(const Protocol& protocol);
 
 }  // namespace study

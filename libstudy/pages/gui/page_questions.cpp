@@ -15,8 +15,8 @@ using study::Question;
 
 namespace {
 
-/// How far the gaze may move along the line of a Vas while it sets a mark by dwelling, as a fraction of the
-/// line's length.
+/// Farthest movement of the gaze along the line of a Vas, as a fraction of the line's length, that does not
+/// restart the dwell that sets the mark.
 constexpr float dwell_reach = 0.04F;
 
 }  // namespace
@@ -100,8 +100,8 @@ void PageView::draw_scale(PageState& state, std::size_t i, std::int64_t now_ns) 
   draw_anchors(question, left, cell);
 }
 
-/// Draws the anchors (words at scores) below or above the scores. Each anchor is as wide as the distance to
-/// the next anchor allows.
+/// Draws the anchors (words at scores) at the cursor. Each anchor is as wide as the distance to the nearest
+/// other anchor allows.
 void PageView::draw_anchors(const Question& question, float left, float cell) {
   const float y = ImGui::GetCursorScreenPos().y, x = ImGui::GetCursorScreenPos().x;
   float bottom = y;
@@ -129,8 +129,8 @@ void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   ImGui::PushID(static_cast<int>(i));
   ImGui::InvisibleButton("line", {column_, height});
   if (ImGui::IsItemHovered()) {
-    // The target changes when the pointer moves along the line by more than dwell_reach. The dwell then
-    // begins again, so that only a gaze that rests sets the mark.
+    // The target changes, and so the dwell restarts, when the pointer moves along the line by more than
+    // dwell_reach. So only a gaze that rests sets the mark.
     if (std::abs(at - looked_at_) > dwell_reach) looked_at_ = at;
     gui_.point_at(ImGui::GetID(std::to_string(looked_at_).c_str()));
   }
@@ -157,7 +157,7 @@ void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   ImGui::Dummy({1, 1});
 }
 
-/// Draws the text of a Reaction large and centred, with what to do below it.
+/// Draws the text of a Reaction large and centred, and below it how to react.
 void PageView::draw_cue(const Question& question) {
   const ImVec2 begun = ImGui::GetCursorScreenPos();
   const float middle = begun.x + column_ / 2;

@@ -41,24 +41,25 @@ class PageSurface {
   /// Input device that moves the pointer.
   virtual AnswerInput pointer() const { return AnswerInput::Mouse; }
 
-  /// Waits for input for about wait_s seconds and processes it. base::Error if the surface is gone.
+  /// Waits for input for about wait_s seconds and processes the input. base::Error if the surface is gone.
   virtual void poll(double wait_s) = 0;
   /// Returns the events since the last call.
   virtual std::vector<PageEvent> take_events() = 0;
   virtual void forget_input() = 0;
-  /// A period (begin, end; ns on the session's clock) without a possibility to answer, if one ended since the
-  /// last call.
+  /// A period (begin, end; ns on the session's clock) in which the participant could not answer; none if no
+  /// such period ended since the last call.
   virtual std::optional<std::pair<std::int64_t, std::int64_t>> take_away() { return {}; }
 
   virtual void begin(unsigned clear_colour) { gui().begin(clear_colour); }
-  /// Finishes the picture that begin() began; show() then presents it.
+  /// Finishes the picture of begin(); show() then presents the picture.
   virtual void end() { gui().end(); }
   virtual void show() = 0;
   /// Presents black now.
   virtual void show_black() = 0;
   virtual void show_cursor(bool /*shown*/) {}
 
-  /// Why the picture could not be seen at some time since the last call; none: it could always be seen.
+  /// The cause for which the picture could not be seen at some time since the last call; none if it could
+  /// always be seen.
   virtual std::optional<CutCause> take_unseen() = 0;
   /// True if the picture cannot be seen now.
   virtual bool unseen() const { return false; }

@@ -88,7 +88,7 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::PopStyleVar();
 }
 
-/// Notes the state of the mouse. A mouse that has not moved since the page appeared highlights nothing.
+/// Updates the state of the mouse. A mouse that has not moved since the page appeared highlights nothing.
 /// Clicks count only once the button was up while input is accepted (`counts`).
 void PageView::look_at_mouse(bool counts) {
   const ImVec2 at = ImGui::GetMousePos();
@@ -167,7 +167,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float size = gui_.size_px(), width = 9 * size, height = 2 * size;
   const ImVec2 from{(screen.x - width) / 2, screen.y - 3.7F * size}, to{from.x + width, from.y + height};
-  if (state.timed()) {  // no buttons; a headset's menu button still stops
+  if (state.timed()) {  // no buttons; the menu button of a headset still opens the stop dialog
     if (!gui_.by_hand()) draw_corner(gui_, text_.corner);
     return;
   }

@@ -22,14 +22,14 @@ struct PageText {
 
 class PageView {
  public:
-  /// layer: unique name among pages that are open at the same time. With it, a page below a dialog keeps its
-  /// scroll position.
+  /// layer: a name that differs from those of all other open pages. With it, Dear ImGui keeps the scroll
+  /// position of a page below a dialog.
   PageView(Gui& gui, const DeskWords& words, PageText text, const char* layer = "body")
       : gui_(gui), words_(words), text_(std::move(text)), layer_(layer) {}
 
   /// Draws into the current frame of the Gui.
   void draw(PageState& state, std::int64_t now_ns);
-  /// Handles a key for the page or the pad that it shows.
+  /// Handles a key for the page, or for its on-screen keyboard if one is shown.
   void press(PageState& state, PageKey key, std::int64_t now_ns);
   /// Scrolls a long text by lines; down is positive.
   void scroll(float lines) { scroll_lines_ += lines; }

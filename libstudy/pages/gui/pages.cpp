@@ -7,9 +7,9 @@ namespace study {
 
 namespace {
 
-// Longest wait for input, s: below 50 ms, because the session's check must run at least every 50 ms.
+// Longest wait for input, s. The session's check runs once in each wait.
 constexpr double poll_s = 0.03;
-// The same on the page of a Reaction, s: short, because a gamepad is read only once in each wait.
+// Longest wait on the page of a Reaction, s: short, because a gamepad is read only once in each wait.
 constexpr double reaction_poll_s = 0.002;
 
 /// Exception that closes the stop dialog when the session ends for another reason.
@@ -34,8 +34,8 @@ bool leaves_field(const PageEvent& event) {
   return event.key == PageKey::Next || event.key == PageKey::Previous;
 }
 
-// Time before the end of a black pause for before_stimulus_: on a 50 Hz screen, finding the beat (the instant
-// of a refresh) takes 10 swaps, 200 ms.
+// Time before the end of a black pause at which before_stimulus_ is called, ns. On a 50 Hz screen, the
+// function needs 200 ms: it finds the screen's beat (the instant of a refresh) with 10 swaps.
 constexpr std::int64_t before_stimulus_ns = 250'000'000;
 
 }  // namespace
@@ -86,7 +86,7 @@ std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question
   surface_.show_cursor(true);
   text.corner = corner();
   PageView view(surface_.gui(), words_, std::move(text));
-  // Draws the page twice before showing it: the first drawing measures sizes.
+  // Draws the page twice before showing it, because the first drawing measures sizes.
   PageState unseen(questions, least_s, now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen);
   surface_.show();

@@ -1,5 +1,6 @@
 #pragma once
-/// The screens between stimuli (pages, pauses and the stop dialog), and the participant who answers on them.
+/// The screens between stimuli (pages, pauses and the stop dialog), and the participant who answers on these
+/// pages.
 
 #include <cstdint>
 #include <functional>
@@ -17,19 +18,19 @@
 
 namespace study {
 
-/// The screens of one session. All calls come from the surface's thread. `clock` is the session's clock.
+/// The screens of a session. All calls come from the surface's thread. `clock` is the session's clock.
 /// Surface and clock must outlive the object.
 class Pages {
  public:
   Pages(PageSurface& surface, const std::string& language, const Clock& clock);
 
-  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; if the participant stops,
-  /// request() reports it.
+  /// Shows a page until it is confirmed. A request to stop opens the stop dialog. If the participant then
+  /// stops, request() returns the end of the session.
   std::vector<TimedAnswer> run_page(PageText text, std::span<const Question> questions, double least_s,
                                     const Check& check);
   /// Shows a page with a choice of two answers; true if the first was chosen.
   bool choose_first(const DeskChoice& choice, const Check& check);
-  /// Shows black until until_ns; if there are words, shows them and the time left.
+  /// Shows black until until_ns; with `words`, shows them and the time left instead.
   void wait(const PauseWords& words, std::int64_t until_ns, const Check& check);
   /// Shows the words on black, without the time left, until `over` returns true.
   void show_words(const PauseWords& words, const std::function<bool()>& over, const Check& check);
@@ -68,7 +69,7 @@ class Pages {
   const Clock& clock_;
   bool in_page_ = false;  ///< true: a page is shown and handles requests to stop
   bool stop_requested_ = false;
-  bool over_ = false;  ///< see set_over()
+  bool over_ = false;
   bool away_ = false;  ///< the last request was a cut because the surface was not visible
 };
 

@@ -12,7 +12,7 @@ struct AnswerWays {
   bool keyboard = false;  ///< keys of the terminal that started the program
 };
 
-/// The ways to answer if the option --answer is not given: all but dwell.
+/// The ways to answer without the option --answer: all but dwell.
 extern const char* const usual_answer_ways;
 
 /// Parses comma-separated words such as "ray,stick". base::Error for unknown words, for no word, and for ray
@@ -20,7 +20,7 @@ extern const char* const usual_answer_ways;
 AnswerWays parse_answer_ways(const std::string& words);
 
 /// base::Error if the keyboard is the only way to answer and the experimenter's console uses the keyboard.
-/// Empty `words` stand for usual_answer_ways.
+/// words: as for parse_answer_ways(); if empty, usual_answer_ways.
 void check_keys_are_free(const std::string& words, bool console);
 
 }  // namespace study

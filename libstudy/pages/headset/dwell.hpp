@@ -12,9 +12,9 @@ class Dwell {
   /// pauses the dwell.
   static constexpr std::int64_t blink_ns = 300'000'000;
 
-  /// target: the target looked at since the last call, 0 for none. seen: true if the eyes are tracked.
-  /// Returns true once the target was looked at for whole_ns. To choose the same target again, the gaze must
-  /// first leave it.
+  /// target: the target looked at since the last call, 0 for none. seen: true if the direction of the gaze is
+  /// known. Returns true once the target was looked at for whole_ns. To choose the same target again, the
+  /// gaze must first leave the target.
   bool look(unsigned target, bool seen, std::int64_t now_ns);
   /// Fraction of whole_ns spent on the current target, 0 to 1; 0 once it was chosen.
   float progress() const;

@@ -93,7 +93,7 @@ class HeadsetSurface final : public PageSurface {
 };
 
 constexpr double fade_s = 0.2;
-constexpr float picture_s = 1.0F / 60;  // s; Dear ImGui needs a frame time, but the pages do not depend on it
+constexpr float picture_s = 1.0F / 60;  // s; Dear ImGui needs a frame time, which does not affect the pages
 // The stick hides the pointer until the hand moves the pointer this far, px: about 2 degrees.
 constexpr float moved_px = 60;
 
@@ -293,7 +293,7 @@ void HeadsetSurface::show_black() {
   pointer_.reset();
 }
 
-/// Owns the surface and its pages. Pointers to one of them share ownership of both.
+/// Owns the surface and its pages. A shared pointer to either of the two keeps the other alive.
 struct HeadsetPages {
   HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol, const Clock& clock)
       : surface(display, ways, page_characters(protocol)), pages(surface, protocol.language, clock) {}

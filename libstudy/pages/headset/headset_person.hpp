@@ -17,9 +17,9 @@ namespace study {
 /// The parts of a session with a person in a headset. Each part shares ownership of the pages.
 struct HeadsetPerson {
   std::unique_ptr<Participant> participant;
-  std::function<Request(const std::function<Request()>& others)> request;  ///< see SessionHooks::request
+  std::function<Request(const std::function<Request()>& others)> request;  ///< for SessionHooks::request
   std::function<std::optional<double>()> idle;  ///< seconds since the last input by hand or key
-  std::function<void()> listen;                 ///< from this call on, takes keys of the terminal as answers
+  std::function<void()> listen;                 ///< call it to answer with keys of the terminal from then on
 };
 
 /// The HeadsetChoice to make the display with. base::Error if the program was built without pages.

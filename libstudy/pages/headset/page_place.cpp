@@ -24,7 +24,8 @@ Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] 
 
 float px_of_height(double degrees) {
   // Lengths here are in units of page_distance_m. (x, y): corner of the page, where an upright length
-  // subtends the smallest visual angle. slope: this angle (rad) per length. px: length of a pixel.
+  // subtends the smallest visual angle. slope: visual angle, rad, of an upright unit length in the corner.
+  // px: length of a pixel.
   const double x = 0.5 * width_m / page_distance_m, y = 0.5 * height_m / page_distance_m;
   const double slope = std::sqrt(1 + x * x) / (1 + x * x + y * y);
   const double px = width_m / page_distance_m / page_width_px;

@@ -13,8 +13,8 @@ namespace study {
 
 /// A mirror on another monitor than the participant's window, or on the same monitor if there is only one and
 /// the participant's window does not fill it. The participant's thread only makes a small copy of each
-/// finished picture. The mirror's thread, whose OpenGL context shares the copies, shows the newest copy about
-/// ten times a second, without waiting for the screen. Input to the mirror's window is ignored.
+/// finished picture. The mirror's thread has an OpenGL context that shares the copies. It shows the newest
+/// copy, at most ten times a second, without waiting for the screen. Input to the mirror's window is ignored.
 class MirrorWindow {
  public:
   /// Call it on the thread of the participant's window, with that window's context current. The participant's

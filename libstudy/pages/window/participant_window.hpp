@@ -18,9 +18,10 @@ namespace study {
 /// Converts newly pressed buttons of any gamepad to events of a page.
 class Gamepad {
  public:
-  /// Presses since the last call, of buttons and of the two triggers. The direction pad gives arrow keys,
-  /// which repeat while it is held, and A gives Enter. B and the left shoulder button go to the previous
-  /// question, the right shoulder button to the next. Other buttons have no key.
+  /// Events of the buttons and the two triggers that were pressed since the last call. The direction pad
+  /// sends arrow keys, which repeat while it is held, and A sends Enter. B and the left shoulder button go to
+  /// the previous question, the right shoulder button to the next. The events of other buttons and of the
+  /// triggers have no key.
   std::vector<PageEvent> take();
   /// Ignores buttons that are held down now.
   void forget() { take(); }
@@ -67,7 +68,7 @@ class ParticipantWindow final : public PageSurface {
   void mirror(unsigned framebuffer);
 
   GlfwWindow& window() { return window_; }
-  /// Size of the framebuffer at the start, px; it must not change.
+  /// Size of the framebuffer when the window was opened, px. The size must not change.
   GlfwWindow::Size size() const { return size_; }
   /// Position of the mouse, px from the lower left corner of the framebuffer; none if outside the window.
   std::optional<std::pair<double, double>> mouse() const;
@@ -87,7 +88,7 @@ class ParticipantWindow final : public PageSurface {
   Backend backend_;
   Gamepad gamepad_;
   unsigned buttons_ = 0;  ///< a bit for each mouse button that was down at the last call of take_events()
-  bool over_ = false;     ///< see set_over()
+  bool over_ = false;
   std::unique_ptr<MirrorWindow> mirror_;
   bool mirror_reveals_ = false;
 };

@@ -25,13 +25,13 @@ namespace study {
 
 namespace {
 
-/// The participant's window as a display of stimuli. It draws off-screen and shows a frame by a buffer swap
-/// that waits for the screen.
+/// The participant's window as a display of stimuli. Draws off-screen and shows a frame by a buffer swap that
+/// waits for the screen.
 ///
 /// Its timing evidence is the submission time (grade D), because the screen does not report when it showed a
 /// frame. The predicted display time is the next beat, the instant at which the screen takes over a picture
-/// (refresh.hpp). The beat is measured before the trial. Destroy stimuli that drew on the display before the
-/// display.
+/// (refresh.hpp). find_beat() measures the beat before a trial. Stimuli that drew on the display must be
+/// destroyed before the display.
 class WindowDisplay final : public Display {
  public:
   /// Measures the refresh with 120 swaps of a black window (2 s at 60 Hz). The session's clock must be the
@@ -145,7 +145,7 @@ PresentTimes WindowDisplay::present(std::int64_t scheduled_ns, Clock& clock) {
   return times;
 }
 
-/// Owns the window and its pages. Pointers to one of them share ownership of both.
+/// Owns the window and its pages. A shared pointer to either of the two keeps the other alive.
 struct WindowPages {
   explicit WindowPages(const ParticipantWindowOptions& options, const std::string& language)
       : window(options), pages(window, language, clock) {}
@@ -190,7 +190,7 @@ WindowParts make_window_parts(const RunOptions& options, const Protocol& protoco
   auto display = std::make_unique<WindowDisplay>(window);
 
   WindowParts parts;
-  WindowDisplay* const screen = display.get();  // outlives the person: see SessionSetup
+  WindowDisplay* const screen = display.get();  // SessionSetup destroys the person before the display
   parts.screen = display->facts();
   parts.size = {window->size().width, window->size().height};
   parts.display = std::move(display);
