@@ -6,8 +6,8 @@ class App;
 
 namespace apps {
 
-/// vip-bench accuracy: error and milliseconds of each solver setting, and the effect of each number of the
-/// solver.
+/// vip-bench accuracy: error and milliseconds per frame of each solver setting, and the effect of each number
+/// of the solver.
 void add_accuracy_command(CLI::App& app);
 
 /// vip-bench effects: milliseconds per frame that each effect of a scene costs.
@@ -25,11 +25,12 @@ void add_headset_command(CLI::App& app);
 /// vip-bench stability: how far the numbers of each hard case can change before the case fails.
 void add_stability_command(CLI::App& app);
 
-/// vip-bench table1: the paper's Table 1, the scores of the methods' pictures against those of HiRes.
+/// vip-bench table1: the paper's Table 1, image quality of the methods' pictures with those of HiRes as
+/// reference.
 void add_table1_command(CLI::App& app);
 
-/// vip-bench table2: the paper's Table 2. For each of the five methods it has the number of
-/// particles, the milliseconds of each part of a frame, and the speed-up.
+/// vip-bench table2: the paper's Table 2: number of particles, milliseconds of each part of a frame and
+/// speed-up of the five methods.
 void add_table2_command(CLI::App& app);
 
 }  // namespace apps

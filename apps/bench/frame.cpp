@@ -27,8 +27,9 @@ namespace apps {
 
 namespace {
 
-/// The account of a frame, with the names of the database's columns. frame: number of frames since the gate
-/// opened. Values that were not measured are null; without guard counts there is no "guards".
+/// The account of a frame as JSON, with the names of the database's columns. frame: number of frames since
+/// the settled start state. Values that were not measured are null; without guard counts, the key "guards" is
+/// missing.
 base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   base::Json out{{"frame", frame}, {"particles", facts.particles_by_level}};
   const auto t = facts.tolerance.value_or(study::FrameTolerance{});
@@ -117,8 +118,7 @@ struct Accounts {
   }
 };
 
-/// Adds the current state to `accuracy`. The kernel launches of this measurement do not count as launches of
-/// the frames.
+/// Adds the current state to `accuracy`. The kernel launches of this measurement are not added to `launches`.
 void measure_apart(sim::Simulation& fluid, measure::Accuracy& accuracy, measure::LaunchSums* launches) {
   if (launches) {
     launches->add(fluid.launch_times());

@@ -16,8 +16,8 @@ struct FrameOptions {
   std::string backend = "auto";
   std::string tau = "live";
   std::string rate, ptpe;
-  std::string setting;  ///< setting file; replaces method, n_star, its tau if any, and the solver's numbers;
-                        ///< empty = none
+  std::string setting;  ///< setting file that replaces method, n_star and the solver's numbers, and tau if
+                        ///< it fixes tau; empty: none
   std::string json;
   std::string save_state;
   int frames = 100;

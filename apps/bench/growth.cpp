@@ -74,7 +74,7 @@ measure::GrowthRow run_size(const sim::Scene& scene, const measure::CellSize& si
   return out;
 }
 
-/// Checks before any run that there are at least two sizes, which the exponent needs.
+/// base::Error unless there are at least two different sizes, which the exponent needs.
 void check_sizes(const std::string& words, const std::vector<measure::CellSize>& sizes) {
   const auto other = [&](const measure::CellSize& size) { return size.n_star != sizes.front().n_star; };
   if (std::any_of(sizes.begin(), sizes.end(), other)) return;

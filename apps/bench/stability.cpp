@@ -118,7 +118,7 @@ void turn(const CaseRun& job, const StabilityOptions& options, measure::MapCell&
   cell.failed = limit.failed;
 }
 
-/// Fills job.cells. Calls `step` after the run at the usual numbers and after each knob.
+/// Fills job.cells. Calls `step` once after the run at the usual numbers and once for each knob.
 void measure(CaseRun& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
   // Errors of this run are not caught: if the back end fails, its error ends the command.

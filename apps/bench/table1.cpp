@@ -21,7 +21,7 @@ namespace apps {
 
 namespace {
 
-/// Options with the words from the command line.
+/// The options, with the value of --checkpoints as typed.
 struct Table1Words : measure::Table1Options {
   std::string checkpoints_word = "all";
 };
@@ -87,7 +87,7 @@ void write_outputs(const measure::Table1Options& options, const Table1& table) {
   }
 }
 
-/// All scenes and sizes of the table. plan_of() checks them before the first run.
+/// All scenes, sizes and presets of the table. plan_of() checks them before the first run.
 struct Plan {
   std::vector<sim::CellScene> scenes;
   std::vector<measure::CellSize> sizes;

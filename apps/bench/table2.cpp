@@ -41,8 +41,8 @@ struct Table2Options : measure::TableOptions {
   stats::PtpeModel model;
 };
 
-/// Times of one cell, one value per frame without warm-up. saliency_ms, levels_ms, activation_ms and solve_ms
-/// come from a second run of the same frames.
+/// Times of one cell, ms, and numbers of particles: one value per frame without the warm-up frames.
+/// saliency_ms, levels_ms, activation_ms and solve_ms come from a second run of the same frames.
 struct CellRun {
   std::vector<double> particles, step_ms, render_ms, frame_ms;
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
@@ -110,7 +110,7 @@ void time_parts(const sim::CellScene& scene, sim::SimulationOptions choice, cons
   for (int frame = 1; frame <= options.frames; ++frame) {
     eye.look(fluid, sim::gaze_point(scene.scene, frame));
     fluid.step_frame();
-    // Draws now, because pending drawing would be timed as saliency of the next frame.
+    // Draws and waits here: drawing that is still pending would be timed as saliency of the next frame.
     if (fluid.follows_picture()) eye.draw(fluid);
     glFinish();
     fluid.frame_time(run.followed_ms[static_cast<std::size_t>(frame - 1)]);

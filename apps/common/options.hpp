@@ -1,6 +1,6 @@
 #pragma once
 /// Options that several commands share, and checks of option values. A value that a file or a screen cannot
-/// represent is an error; it is never clamped or cut.
+/// represent is refused, not clamped or cut.
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -17,7 +17,8 @@ namespace apps {
 /// Adds the required --db DATABASE of vip-study.
 CLI::Option* add_database(CLI::App& command, std::string& database);
 
-/// Adds the database of vip-stats, as a positional argument or as --db; the command must call check_given().
+/// Adds the database of vip-stats, as a positional argument or as --db. The command must then call
+/// check_given().
 void add_database_argument(CLI::App& command, std::string& database);
 /// Adds --incomplete, an option of the commands that read a study (study::StudyFile).
 void add_incomplete(CLI::App& command, bool& incomplete);
@@ -53,11 +54,11 @@ CLI::Validator number_in(double low, double high);
 /// Accepts texts of at most this many bytes.
 CLI::Validator text_up_to(std::size_t most_bytes);
 
-/// Throws base::Error if the file cannot be written (base::check_output). The check runs when the command
-/// line is parsed, so that the command does not compute a result that it cannot write.
+/// Accepts paths of files that can be written; otherwise base::Error (base::check_output). The check runs
+/// when the command line is parsed, so that no command computes a result that it cannot write.
 CLI::Validator output_file();
 
-/// As output_file(), for files in a folder (base::check_output_folder).
+/// Accepts folders in which files can be written; otherwise base::Error (base::check_output_folder).
 CLI::Validator output_folder();
 
 /// base::Error if an output would overwrite the database or another output. `outputs`: path by option; an

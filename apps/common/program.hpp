@@ -11,7 +11,7 @@ class App;
 
 namespace apps {
 
-/// Makes a program without commands, so that main.cpp need not include CLI11, whose headers take seconds to
+/// Makes a program without commands. main.cpp then need not include CLI11, whose headers take seconds to
 /// compile.
 std::shared_ptr<CLI::App> new_program(const char* description, const char* name);
 
@@ -23,8 +23,8 @@ std::shared_ptr<CLI::App> new_program(const char* description, const char* name)
 /// once with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
-/// The message for an error on stderr. Errors of other libraries have no place and no remedy; the message
-/// adds both. command: the command as typed, such as "vip-stats report".
+/// The message for an error on stderr. To errors of other libraries, which have neither a place nor a remedy,
+/// it adds both. command: the command as typed, such as "vip-stats report".
 std::string error_text(const std::exception& error, const std::string& command);
 
 }  // namespace apps

@@ -18,9 +18,11 @@ inline constexpr const char* registered_files =
     "deleted, to be made again.";
 
 struct ChoiceOptions {
-  std::string protocol;         ///< name with or without version, or first digits of the SHA-256; empty: all
-  std::string question;         ///< id of the question; empty: all questions
-  std::optional<double> level;  ///< level of the fitted curve; empty: see level_of()
+  std::string protocol;  ///< name with or without version, or first digits of the SHA-256; empty: all
+  std::string question;  ///< id of the question; empty: all questions
+  /// Score at which a pilot's curve is fitted; empty: the plan's, else the protocol's, else the scale's
+  /// middle.
+  std::optional<double> level;
 
   study::TaskSelection selection(study::TaskKind task, const stats::AnalysisPlan& plan) const {
     return {task, protocol, plan, question, level};

@@ -34,7 +34,8 @@ struct FitCommand {
   std::string database, out, json, svg, truth, plan;
   std::optional<std::string> exclude;  ///< replaces the plan's rule for timing verdicts
   std::optional<std::uint64_t> seed;   ///< replaces the plan's seed
-  /// Largest half width of the curve's band, as a fraction of mu, with which the solver's file is written.
+  /// Largest half width of the curve's band, as a fraction of mu, with which the solver's file is still
+  /// written.
   double max_width = 0.35;
   bool force = false;
   bool accept_form = false;
@@ -83,8 +84,8 @@ std::string fitted_name(const study::ChosenTask& chosen) {
   return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
-/// Writes the fit as JSON and prints it. If the true model is known (--truth), also reports whether the fit
-/// recovered it.
+/// Writes the fit as JSON and prints the fit. If the true model is known (--truth), also reports whether the
+/// fit recovered the model.
 void report(const FitCommand& command, const study::PilotFit& fit,
             const std::optional<stats::PtpeModel>& truth) {
   auto json = study::fit_json(fit);

@@ -17,7 +17,6 @@ namespace apps {
 
 namespace {
 
-/// An interval of frame rates as text.
 std::string rates(const std::array<double, 2>& ci, int decimals) {
   if (ci[1] > study::highest_rate) return fmt::format("[{:.{}f}, no upper bound]", ci[0], decimals);
   return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);

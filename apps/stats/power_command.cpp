@@ -39,7 +39,8 @@ void refuse(const std::string& option, const std::string& problem, const std::st
   throw base::Error(option, problem, mend);
 }
 
-/// Refuses options that have no effect for this kind of protocol.
+/// Refuses options that do not apply to this kind of protocol. For Task 2, also refuses a preference outside
+/// (0, 1), and a design whose repeated pairs the plan refuses to test.
 void check_kind(const study::PowerRequest& request, study::PowerKind kind, const CLI::App& options) {
   const auto only = [&](const char* option, bool fits, const char* where) {
     if (options.count(option) > 0 && !fits)
@@ -82,8 +83,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   check_kind(request, kind, options);
   request.n =
       command.n.empty() ? std::vector{request.protocol.participants} : study::parse_participants(command.n);
-  // Default numbers of simulated studies. They take about half a minute on two cores, however many numbers of
-  // participants are requested.
+  // Default number of simulated studies for each n. More than 12 values of n halve the number, to limit the
+  // time.
   const bool many = request.n.size() > 12;
   const int usual_studies = many ? 1000 : 2000, usual_pilots = many ? 200 : 400;
   request.studies = command.studies > 0               ? command.studies
@@ -98,8 +99,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    // In Task 2 the world "margin" equals the world "null". Its differences suit only the shipped hypotheses,
-    // so that it is also omitted for other claims.
+    // In Task 2 the world "margin" equals "null". In Task 1 its differences fit only the shipped hypotheses,
+    // so that a plan with claims of its own omits it too.
     if (kind == study::PowerKind::Task2 || !request.plan.plan.claims.empty())
       std::erase(request.worlds, "margin");
     if (!request.protocol.design.effects.empty())

@@ -84,8 +84,8 @@ const char* test_word(const study::Json& pair) {
   return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
 }
 
-/// Prints the names of the kinds of confidence intervals. If the pairs have different kinds, prints the pairs
-/// of each kind too.
+/// Prints the names of the kinds of confidence intervals. If there are several kinds, also prints the pairs
+/// with each kind.
 void print_interval_names(const study::Json& pairs) {
   std::vector<std::pair<std::string, std::string>> names;  // kind of interval, names of its pairs
   for (const auto& pair : pairs) {

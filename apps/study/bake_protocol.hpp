@@ -19,11 +19,11 @@ struct ProtocolBakes {
 /// header.
 std::uint64_t most_bytes(const sim::BakeHeader& header);
 
-/// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it
-/// keeps, makes and leaves out. An existing bake is read completely. It is kept if it is whole, contains the
-/// wanted fluid, view and pictures, and was made by this version and renderer. `stop` is called before each
-/// frame and may throw to stop baking; complete bakes remain. base::Error: nothing can be baked, too little
-/// disk space, errors of write_bake().
+/// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes exist
+/// and are valid, which are made, and how many stimuli run live. An existing bake is valid if its header has
+/// the wanted fluid, view and pictures and this version and renderer, and if all its frames can be read.
+/// `stop` is called before each frame and may throw to stop baking; complete bakes remain. base::Error:
+/// nothing can be baked, too little disk space, errors of write_bake().
 void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
                    const std::function<void()>& stop);
 

@@ -98,8 +98,8 @@ void add_measured(base::Json& json, const study::MeasuredReport& measured) {
   }
 }
 
-/// The analyses that vip-stats will report in addition to the answers by cell, and the tests that it will not
-/// report.
+/// The tests and fits that vip-stats will report, and the tests that it will not report. For a protocol with
+/// factors: the questions that it will report by cell.
 base::Json analyses_json(const study::Protocol& protocol) {
   auto tested = base::Json::array(), fitted = tested, not_tested = tested;
   if (!protocol.design.factors.empty())

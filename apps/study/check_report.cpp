@@ -21,7 +21,8 @@ namespace {
 
 using study::TimingSource;
 
-/// The reason why a setting is not exact. Names the stimulus too if each stimulus has its own setting.
+/// The reason why a setting is not exact. Under timing = "table2", where each stimulus has its own setting,
+/// also names the stimulus.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
   const auto& cells = report.settings[setting].cells;
@@ -35,8 +36,8 @@ double longest_ms(const study::RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
-/// Prints the tests and fits that vip-stats will report for this protocol. The answers by cell are printed
-/// only for a protocol with factors, which has no such tests. vip-stats reports them for every protocol.
+/// Prints the tests and fits that vip-stats will report for this protocol. For a protocol with factors,
+/// prints the questions that vip-stats will report by cell instead.
 void print_analyses(const study::Protocol& protocol) {
   if (!protocol.design.factors.empty()) {
     const std::string ids = base::joined(questions_by_cell(protocol));

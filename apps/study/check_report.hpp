@@ -18,7 +18,7 @@ struct CheckReport {
   study::SessionOutline outline;
   study::PlannedBalance balance;
   std::vector<study::CheckedSetting> settings;  ///< all settings of the frame rate; none if native
-  std::optional<study::RefreshCheck> refresh;   ///< check at the rate of --refresh; none: not given
+  std::optional<study::RefreshCheck> refresh;   ///< check at the rate of --refresh; none: no --refresh
   std::vector<study::RefreshCheck> common;      ///< checks at the common rates; may be empty
   std::optional<study::MeasuredReport> measured;
   std::vector<study::FramedScene> scenes;
@@ -30,8 +30,8 @@ const char* timing_name(const study::Design& design);
 /// Ids of the questions whose answers vip-stats reports by cell: those that the trials ask, except free text
 /// and personal questions.
 std::vector<std::string> questions_by_cell(const study::Protocol& protocol);
-/// Levels that an adaptive procedure may choose, as indices into the levels of its factor: those of any cell
-/// but the standard.
+/// Levels that an adaptive procedure may choose, as indices into the levels of its factor: the levels of all
+/// cells but the standard.
 std::vector<std::size_t> candidate_levels(const study::Design& design);
 /// Number of tracks of an adaptive procedure in a session.
 int tracks_of(const study::Design& design);

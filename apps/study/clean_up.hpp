@@ -1,5 +1,5 @@
 #pragma once
-/// Carries out withdrawals for the commands, and prints the results of a withdrawal or a merge.
+/// Carries out withdrawals for several commands, and prints the results of a withdrawal or a merge.
 
 #include <filesystem>
 #include <string>

@@ -133,8 +133,8 @@ class Show {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
-  /// Shows the scene until the time is over or the runtime asks to exit. False if the session is lost or the
-  /// runtime ends.
+  /// Shows the scene until seconds_left have passed or the runtime asks to exit, and then returns true.
+  /// Returns false if the session is lost or the runtime ends.
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {

@@ -25,9 +25,9 @@ struct LiveTimes {
 };
 
 /// Times each live stimulus during one trial at the display's size and angle. Uses the times in
-/// sim::default_cache_folder() if the same program measured the stimulus on this machine before, except
-/// for cells with place.anew. Before measuring, prints on stderr how long it takes at most. base::Error for
-/// an unknown scene, method or n_*.
+/// sim::default_cache_folder() if the same program measured the stimulus on this machine before, except for
+/// cells with place.anew. Before measuring, prints on stderr how long it takes at most, without preparing the
+/// stimuli. base::Error for an unknown scene, method or n_*.
 LiveTimes measure_live(const study::Protocol& protocol, study::CellStimuli& stimuli,
                        const MeasuringPlace& place);
 

@@ -72,7 +72,8 @@ void check_settings(const std::vector<std::string>& files, const study::RunOptio
 }
 
 /// Refuses stimuli that differ from the recorded stimuli, and a display on which a session would become test
-/// data. Another machine, display or framing is not refused: this function stores each with each session.
+/// data. Another machine, display or framing is allowed: stores machine, display and framing with each
+/// session.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const study::SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {

@@ -54,8 +54,8 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
   return codes;
 }
 
-/// Default display, clock and gaze: a window in real time for a person; no display and the virtual clock for
-/// an observer.
+/// Sets the defaults of display, clock and gaze. A person: a window in real time. An observer: no display and
+/// the virtual clock, but real time if a window is requested. Gaze: "fixed" with a display, else "none".
 void choose_defaults(study::RunOptions& run) {
   const bool person = run.observer.empty();
   if (run.display.empty()) run.display = person ? "window" : "none";
@@ -63,7 +63,8 @@ void choose_defaults(study::RunOptions& run) {
   if (run.gaze.empty()) run.gaze = run.display == "none" ? "none" : "fixed";
 }
 
-/// Sets the size of the picture. Without --size, a window fills the monitor.
+/// Sets the size of the picture from --size. Without --size, a window fills the monitor, and other displays
+/// have their default size.
 void take_size(const std::optional<base::PictureSize>& size, study::RunOptions& run) {
   if (!size && run.display != "window") return;
   run.width_px = size ? size->width : 0;
@@ -118,8 +119,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   return session;
 }
 
-/// Plans a session for each participant. Each session takes the counterbalancing slot that the fewest
-/// sessions have taken so far (study::next_slot).
+/// Plans a session for each participant, each at the slot of the assignment that study::next_slot() returns.
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
                              std::vector<int> taken) {
@@ -199,7 +199,7 @@ void run(RunCommand& command) {
   open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
-  // The stored specification contains the defaults of this version, because another version may have other
+  // The stored observer is written with the defaults of this version, because another version may have other
   // defaults.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);

@@ -105,7 +105,7 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   std::fflush(stdout);
 }
 
-/// Reports the events of a run to the console or the progress bar, and gives the requests of the console to
+/// Reports the events of a run to the console or the progress bar, and passes the requests of the console to
 /// the session.
 class Steering {
  public:

@@ -27,9 +27,9 @@ class StopSignals {
   std::vector<std::pair<int, struct sigaction>> before_;
 };
 
-/// Makes the function that is called while another program locks the database. It prints the name of that
-/// program on stderr, first after a second and then every ten seconds. The waiting ends when the lock is
-/// released or a stop is requested.
+/// Makes the function that is called about once a second while another program locks the database. Every
+/// tenth call, from the first on, prints the name of that program on stderr. The waiting ends when the lock
+/// is released or a stop is requested.
 study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database);
 
 /// Options that vip-study run and resume share.

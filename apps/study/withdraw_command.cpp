@@ -21,7 +21,8 @@ struct WithdrawCommand {
   bool yes = false;
 };
 
-/// Asks for the participant's code again, because the deletion is final.
+/// Asks the user to type the participant's code again, because the deletion is final. base::Error if the code
+/// differs.
 void confirm(const WithdrawCommand& command) {
   if (command.yes) return;
   std::string typed;

@@ -1,6 +1,6 @@
 #pragma once
-/// Choices that vip-view's window offers while it runs, and their consequences. The code needs no window and
-/// no GL.
+/// Choices that the user of vip-view's window can change while it runs, and their consequences. The code
+/// needs no window and no GL.
 
 #include <string>
 #include <vector>

@@ -35,7 +35,6 @@ class Interrupt {
   void (*before_)(int);
 };
 
-/// Statistics of the shown frames.
 struct Shown {
   int frames = 0;
   stats::FpsWindow fps{30};
@@ -52,7 +51,7 @@ class HeadsetViewer {
         clock_(display),
         recorder_(display,
                   display.session().eye_gaze ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
-    recorder_.start();  // gives the current gaze; its samples are not stored
+    recorder_.start();  // lets recorder_.ray() use the tracker; the viewer discards the samples
     fmt::print("shown in    {}\n", display.description());
     fmt::print("levels      follow {}\n",
                display.session().eye_gaze ? "the eye tracker" : "the head's direction");
@@ -115,7 +114,7 @@ class HeadsetViewer {
     return state == study::HeadsetState::Visible || state == study::HeadsetState::Focused;
   }
 
-  std::string scene_;  ///< path of the scene file
+  std::string scene_;
   std::optional<int> frames_;
   study::HeadsetDisplay& display_;
   study::HeadsetClock clock_;
@@ -131,7 +130,8 @@ void print(const Shown& shown) {
   fmt::print("ended       {}\n", shown.ended);
 }
 
-/// Connects to a headset. If there is none, prints the reason and returns null.
+/// Connects to a headset. If this fails, prints the reason and returns null; on the virtual clock, throws the
+/// error.
 std::unique_ptr<study::HeadsetDisplay> connect(const std::string& clock) {
   const bool stands_still = clock == "virtual";
   study::HeadsetRules rules;

@@ -60,8 +60,8 @@ sim::Scene drawn(const PreparedFluid& prepared);
 /// apply as long as method, n_star, levels and preset are unchanged.
 void take_setting(ViewOptions& options, const std::string& path);
 
-/// Lines with the cost and the errors that the sweep measured for a setting in this scene; none without a
-/// sweep.
+/// Lines with the cost and the errors that the sweep measured for a setting in this scene. One line that says
+/// so if the preset is not "tuned"; no lines without a sweep.
 std::vector<std::string> price_lines(const ViewOptions& options, const sim::SolverSetting& setting,
                                      const sim::Scene& scene);
 

@@ -34,7 +34,7 @@ const std::vector<std::string>& overlay_names();
 /// Names of the overlays with the paper's symbols, such as "acuity f_a".
 const std::vector<std::string>& overlay_titles();
 
-/// Reads values of the particles of a simulation and paints them over the simulation's last picture.
+/// Reads values of the particles of a simulation and paints them over the last picture of the water.
 class OverlayPainter {
  public:
   /// The scene gives the range of temperatures. `finest_spacing_m`: rest spacing of the finest particles.

@@ -242,8 +242,8 @@ void add_accuracy_command(CLI::App& app) {
                        ->add_option("--db", options->database,
                                     "Sweep file, made when missing; cells in it are not run again")
                        ->check([](const std::string& path) {
-                         // An existing sweep file may be in a read-only folder, because some options only
-                         // read it.
+                         // Some options only read the sweep file: an existing one may be in a folder that
+                         // cannot be written.
                          return std::filesystem::is_regular_file(path) ? "" : output_file()(path);
                        });
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();

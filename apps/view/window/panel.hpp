@@ -29,7 +29,7 @@ struct Figures {
   std::string legend;              ///< legend of the values painted over the water
   std::vector<std::string> price;  ///< lines with cost and errors of the setting; empty without a sweep
   PassMeans passes;                ///< filled only while the schedule is shown
-  std::string said;                ///< text of the last error, or the path of the last screenshot
+  std::string said;                ///< text of the last error, or the file name of the last screenshot
 };
 
 /// Values that the user sets in the panel.
@@ -59,7 +59,7 @@ class Panel {
   void draw(Controls& controls, const Figures& figures);
   /// Draws the progress of a new fluid: a text and a bar from 0 to 1.
   void draw_progress(const std::string& text, float done);
-  /// True if the mouse is over the panel. The mouse is then no gaze.
+  /// True if the mouse is over the panel. The position of the mouse is then not used as gaze.
   bool has_mouse() const;
   /// True while the user types a number in the panel.
   bool has_keys() const;

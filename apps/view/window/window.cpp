@@ -141,7 +141,7 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
 
 /// Makes a fluid for the chosen options. If this fails, the old fluid remains and the panel shows the error.
 void Viewer::begin_anew() {
-  // The chosen effects belong to the old scene.
+  // Drops the choice of effects, which is of the old scene.
   if (controls_.chosen.scene != running_.scene) {
     controls_.chosen.effects.reset();
     controls_.chosen.effects_off.clear();
@@ -182,8 +182,8 @@ void Viewer::follow_schedule() {
   figures_.passes.clear();
 }
 
-/// Gives the fluid the chosen effects. If the fluid refuses them, the old effects remain and the panel shows
-/// the error.
+/// Sets the chosen effects of the fluid. If the fluid refuses them, the old effects remain and the panel
+/// shows the error.
 void Viewer::exchange_effects() {
   PreparedFluid& prepared = fluid_->prepared;
   const auto chosen = controls_.chosen.effects.value_or(prepared.scene.effects);
