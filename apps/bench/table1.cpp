@@ -59,7 +59,7 @@ struct Table1 {
   }
 };
 
-/// Path of a further table next to `csv`: "rows.csv" gives "rows_WORD.csv".
+/// Path of a further table in the folder of `csv`: "rows_paired.csv" for "rows.csv" and the word "paired".
 std::filesystem::path beside(const std::filesystem::path& csv, const std::string& word) {
   return csv.parent_path() / (csv.stem().string() + "_" + word + csv.extension().string());
 }

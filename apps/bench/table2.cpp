@@ -46,7 +46,7 @@ struct Table2Options : measure::TableOptions {
 struct CellRun {
   std::vector<double> particles, step_ms, render_ms, frame_ms;
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
-  /// Mean time of passing the picture to saliency; contained in step_ms, but not in frame_ms.
+  /// Mean time of passing the picture to saliency, ms. Contained in step_ms, but not in frame_ms.
   double seen_ms = 0;
   std::vector<double> followed_ms;  ///< frame times from which a measured tau follows, including warm-up
   sim::PictureWay seen_way = sim::PictureWay::None;

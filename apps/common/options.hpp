@@ -29,14 +29,15 @@ void check_given(const std::string& database);
 CLI::Option* add_plan(CLI::App& command, std::string& plan);
 
 /// Adds --method NAME, --n-star NUMBER or --backend NAME to a command that runs one fluid. The present value
-/// of the argument is the default.
+/// of the string is the default.
 CLI::Option* add_method(CLI::App& command, std::string& method);
 CLI::Option* add_n_star(CLI::App& command, std::string& n_star);
 CLI::Option* add_backend(CLI::App& command, std::string& backend);
-/// --backend of vip-study; refuses an unknown name.
+/// Adds --backend to a command of vip-study, with the help text `what`; refuses an unknown name.
 CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* what);
 
-/// --size WIDTHxHEIGHT (parse_picture_size). The value of `size` is the default; an empty `size` has none.
+/// Adds --size WIDTHxHEIGHT (parse_picture_size). The present value of `size` is the default; an empty `size`
+/// is no default.
 CLI::Option* add_size(CLI::App& command, base::PictureSize& size, const char* what);
 CLI::Option* add_size(CLI::App& command, std::optional<base::PictureSize>& size, const char* what);
 

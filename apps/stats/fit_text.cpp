@@ -61,8 +61,8 @@ void print_points(const std::vector<double>& deltas, const Curve& curve) {
   std::printf("\n");
 }
 
-/// Prints the curve at the standard deviations of the shown frame rates, the test of its form, and the
-/// lack-of-fit test.
+/// Prints the curve and its band at the standard deviations of the shown frame rates, the test of the curve's
+/// form, and the lack-of-fit test.
 void print_curve(const study::PilotFit& fit) {
   const auto& direct = fit.chosen().direct;
   if (!direct.jackknife) return;

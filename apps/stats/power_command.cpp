@@ -99,8 +99,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    // In Task 2 the world "margin" equals "null". In Task 1 its differences fit only the shipped hypotheses,
-    // so that a plan with claims of its own omits it too.
+    // In Task 2 the world "margin" equals "null". In Task 1 the differences of "margin" fit only the shipped
+    // hypotheses. So "margin" is omitted in Task 2 and for plans with claims of their own.
     if (kind == study::PowerKind::Task2 || !request.plan.plan.claims.empty())
       std::erase(request.worlds, "margin");
     if (!request.protocol.design.effects.empty())

@@ -1,5 +1,5 @@
-/// vip-stats preregister: writes protocol, hypotheses, rules and seed under one hash before the data are
-/// collected.
+/// vip-stats preregister: freezes protocol, hypotheses, rules and seed in a folder with one hash, before the
+/// data are collected.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Largest size of a stored particle: three coordinates of 16 bits, if compression does not help.
+/// Largest size of a stored particle, bytes: three coordinates of 16 bits, if compression does not help.
 constexpr std::uint64_t bytes_of_particle = 6;
 constexpr std::uint64_t bytes_of_temperature = 2;
 /// Largest size of a stored foam particle: three coordinates and a radius, 16 bits each.
 constexpr std::uint64_t bytes_of_foam = 8;
-/// Upper bound for pictures; those of the installed scenes take about 0.6 bytes per pixel.
+/// Upper bound for pictures, bytes per pixel; pictures of the installed scenes take about 0.6.
 constexpr std::uint64_t bytes_of_pixel = 1;
 
 struct Task {

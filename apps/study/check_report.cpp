@@ -55,7 +55,7 @@ void print_analyses(const study::Protocol& protocol) {
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
 }
 
-/// Prints a table: the factors of each cell, what it shows and its timing.
+/// Prints a table with a row for each cell: its level of each factor, its stimulus and its timing.
 void print_cells_of(const study::Design& design) {
   std::vector<std::vector<std::string>> rows(1);
   for (const study::DesignFactor& factor : design.factors)

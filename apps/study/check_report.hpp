@@ -35,8 +35,8 @@ std::vector<std::string> questions_by_cell(const study::Protocol& protocol);
 std::vector<std::size_t> candidate_levels(const study::Design& design);
 /// Number of tracks of an adaptive procedure in a session.
 int tracks_of(const study::Design& design);
-/// Longest time, s, that a showing may run past its planned end before it is cut. It is the same for all
-/// showings, because all showings of a protocol have the same duration.
+/// Longest time, s, that a showing may run past its planned end before it is cut; equal for all showings,
+/// because all showings of a protocol have the same planned duration.
 double overrun_s(const study::Protocol& protocol);
 /// Smallest and largest play speed (simulated time / display time) over all settings.
 study::Span play_speeds(const CheckReport& report);

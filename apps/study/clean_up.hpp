@@ -23,7 +23,7 @@ void print_clean_up(const study::CleanUp& done);
 void withdraw_and_tell(const std::filesystem::path& database, const std::string& participant);
 
 /// base::Error if a requested withdrawal has not been carried out, so that no export contains data of a
-/// person who withdrew.
+/// person who asked for deletion.
 void check_no_withdrawal_is_due(const study::StudyFile& study);
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-/// vip-study trace: makes a timing profile of captured frame times.
+/// vip-study trace: makes a timing profile from captured frame times.
 
 #include <cstdio>
 #include <memory>

@@ -15,8 +15,8 @@ enum class Change {
   Numbers,  ///< the running fluid changes at the next frame: Simulation::change() and set_effects()
   Fluid     ///< a new fluid starts at frame 0
 };
-/// The consequence of changing `before` to `after`. Compares scene, method, preset, n_*, N, alpha, iterations
-/// and effects; the other options cannot change while a window is open.
+/// The consequence of changing `before` to `after`. Compares scene, method, preset, n_*, number of levels,
+/// alpha, iterations and effects; the other options cannot change while a window is open.
 Change change_between(const ViewOptions& before, const ViewOptions& after);
 
 /// The paper's scenes that are installed, and the opened scene if it is another one.

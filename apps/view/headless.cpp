@@ -25,8 +25,8 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// File of a picture: frame_0040.png. With several overlays, the name of a picture with an overlay contains
-/// its name: frame_0040_level.png.
+/// File of a picture, such as frame_0040.png; with several overlays, frame_0040_level.png for the overlay
+/// "level".
 std::filesystem::path picture_path(const std::string& folder, int frame, OverlayKind overlay, bool several) {
   std::string name = fmt::format("frame_{:04}", frame);
   if (several && overlay != OverlayKind::None)

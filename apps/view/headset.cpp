@@ -60,8 +60,8 @@ class HeadsetViewer {
     frame_ns_ = std::llround(1e9 * prepared.frame_dt_s);
     study::Viewing viewing;
     viewing.ray = [this] { return recorder_.ray(); };
-    // Gives the prepared fluid away once. No second fluid is needed, because the viewer's steps never go
-    // back.
+    // Returns the prepared fluid at the first call. No second fluid is needed, because the steps of the
+    // viewer never go back.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
     const auto make = [fluid] { return std::move(*fluid); };
     fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing);
@@ -101,7 +101,7 @@ class HeadsetViewer {
       if (on_ns > 0 && times.predicted_display_ns > on_ns)
         shown.fps.push(1e-9 * static_cast<double>(times.predicted_display_ns - on_ns));
       on_ns = times.predicted_display_ns;
-      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // delays are not made up by faster frames
+      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // a delay postpones all later frames
       due_ns += frame_ns_;
       ++shown.frames;
       display_.hold(due_ns - computed_ns, clock_);

@@ -21,14 +21,14 @@ struct ViewOptions {
   std::string n_star = "16k";
   std::string backend = "auto";
   std::string preset = "tuned";
-  std::string overlay = "none";   ///< values painted over the water; headless also several, with commas
-  std::string tau = "live";       ///< "live" or "fixed:X"
-  int levels = 4;                 ///< number of levels, N
-  std::optional<double> alpha;    ///< weight of the temporal feature; none = the preset's
-  std::optional<int> iterations;  ///< solver iterations per substep; none = the scene's
-  std::string camera = "view";    ///< view | overview
-  std::string ptpe;               ///< file of a fitted PTPE model; empty = none
-  std::optional<sim::SettingFile> setting;          ///< the setting file that take_setting() read
+  std::string overlay = "none";             ///< values painted over the water; headless: one or several
+  std::string tau = "live";                 ///< "live" or "fixed:X"
+  int levels = 4;                           ///< number of levels, N
+  std::optional<double> alpha;              ///< weight of the temporal feature; none = the preset's
+  std::optional<int> iterations;            ///< solver iterations per substep; none = the scene's
+  std::string camera = "view";              ///< view | overview
+  std::string ptpe;                         ///< file of a fitted PTPE model; empty = none
+  std::optional<sim::SettingFile> setting;  ///< the setting file that take_setting() read
   std::shared_ptr<const study::SweepTables> sweep;  ///< costs and errors of settings; null = not requested
   std::string png_folder;                           ///< folder for pictures; empty = no pictures
   base::PictureSize size{1280, 720};
@@ -51,7 +51,7 @@ struct PreparedFluid {
   double finest_spacing_m = 0;   ///< rest spacing of the finest particles: twice their radius r_*
   bool follows_picture = false;  ///< true: the levels depend on the last picture
   bool follows_rate = false;     ///< true: the solver uses the measured frame rate
-  double frame_dt_s = 0;         ///< duration of a frame of the fluid
+  double frame_dt_s = 0;         ///< duration of a frame of the fluid, s
   sim::SolverSetting setting;    ///< solver setting at frame 0
 };
 /// The scene for the renderer: without the effects that cannot act in the method's water.
@@ -60,8 +60,8 @@ sim::Scene drawn(const PreparedFluid& prepared);
 /// apply as long as method, n_star, levels and preset are unchanged.
 void take_setting(ViewOptions& options, const std::string& path);
 
-/// Lines with the cost and the errors that the sweep measured for a setting in this scene. One line that says
-/// so if the preset is not "tuned"; no lines without a sweep.
+/// Lines with the cost and the errors that the sweep measured for a setting in this scene; no lines without a
+/// sweep. If the preset is not "tuned", one line that says that the setting was not measured.
 std::vector<std::string> price_lines(const ViewOptions& options, const sim::SolverSetting& setting,
                                      const sim::Scene& scene);
 

@@ -37,7 +37,8 @@ const std::vector<std::string>& overlay_titles();
 /// Reads values of the particles of a simulation and paints them over the last picture of the water.
 class OverlayPainter {
  public:
-  /// The scene gives the range of temperatures. `finest_spacing_m`: rest spacing of the finest particles.
+  /// scene: determines the temperatures at the ends of the colour scale. finest_spacing_m: rest spacing of
+  /// the finest particles.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
       : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
   void paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidPicture& picture, unsigned framebuffer);

@@ -32,7 +32,7 @@ sim::SimulationOptions chosen(const ViewOptions& options) {
   return out;
 }
 
-/// True if method, preset, n_star and levels still have the values of the setting file.
+/// True if method, n_star and levels still have the values of the setting file and the preset is "tuned".
 bool as_set(const ViewOptions& options) {
   if (!options.setting) return false;
   const sim::SolverSetting& of = options.setting->setting;

@@ -16,7 +16,7 @@ int williams_rows(int k) { return k % 2 == 0 || k == 1 ? k : 2 * k; }
 std::vector<int> williams_row(int k, int row) {
   // Row 0 is 0, 1, k - 1, 2, k - 2, ...; row r adds r to each item, modulo k. If k is even, the differences
   // between neighbours are distinct modulo k. If k is odd, half of the differences occur twice, the others
-  // never; rows k to 2 k - 1 are rows 0 to k - 1 reversed, which gives the other differences.
+  // never. So rows k to 2 k - 1 are rows 0 to k - 1 reversed: their neighbours have the other differences.
   std::vector<int> out;
   for (int i = 0; i < k; ++i) {
     const int zigzag = i % 2 == 1 ? (i + 1) / 2 : (k - i / 2) % k;

@@ -141,9 +141,10 @@ std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t ke
 
 namespace {
 
-// First random counters of separate ranges, so that no two purposes share random numbers: the range for
-// schedule seeds, and the range for adaptive tracks, practice, repeats, catches and random interval orders
-// ("extra"). Shuffles of trials start at counter 0, a random draw of groups at 2^33.
+// First random counters of separate ranges, so that no two purposes share random numbers. One range is for
+// schedule seeds. The range "extra" is for adaptive tracks, practice, repeats, catches and, under
+// Assignment::PaperRandom, interval orders. Shuffles of trials start at counter 0, a random draw of groups at
+// 2^33.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;

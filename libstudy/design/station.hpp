@@ -24,8 +24,9 @@ std::optional<StationNumber> parse_station_number(const std::string& station);
 /// The station number as text: "2/5".
 std::string station_text(const StationNumber& station);
 
-/// The seed of a station's sessions, computed from the study's seed and the station number, at most 2^63 - 1.
-/// So participant code P01 gets different orders at two stations. Returns `seed` if there is no number.
+/// The seed of a station's sessions, at most 2^63 - 1, computed from the study's seed and
+/// StationNumber::number. So participant code P01 gets different orders at two stations. Without a station
+/// number, returns `seed`.
 std::uint64_t seed_of_station(std::uint64_t seed, const std::optional<StationNumber>& station);
 
 /// The slot for the station's next participant. Station k of n assigns every n-th slot from slot k - 1 on,

@@ -36,7 +36,7 @@ struct GazeQuality {
   std::int64_t samples = 0, valid = 0;
   std::optional<double> accuracy_deg;  ///< angle from target to mean gaze; none: no valid sample
   std::optional<double> sd_deg;        ///< root mean square angle to the mean gaze; none: no valid sample
-  /// root mean square angle between successive valid samples; none: fewer than two
+  /// Root mean square angle between successive valid samples; none: fewer than two.
   std::optional<double> rms_s2s_deg;
 };
 

@@ -69,7 +69,7 @@ class SlotSource {
   virtual void stop_slots() = 0;
   /// Distance between the eyes in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
-  /// Events of the headset since the last call, in words for the log. Each may have changed facts().
+  /// Events of the headset since the last call, in words for the log. Each event may have changed facts().
   virtual std::vector<std::string> take_news() = 0;
 };
 

@@ -188,7 +188,7 @@ class CaptureReader {
   FrameCapture out_;
 };
 
-/// Keeps the first frames that last `seconds` together. base::Error if all frames last less.
+/// Keeps the first frames that together last at least `seconds`. base::Error if all frames last less.
 void cut(FrameCapture& capture, double seconds, const std::string& file) {
   double time_s = 0;
   std::size_t count = 0;

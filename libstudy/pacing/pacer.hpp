@@ -56,7 +56,7 @@ struct PlayedTrial {
 
 /// Timing bounds of a trial while it is shown.
 struct ShowingBounds {
-  std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled exceeds this
+  std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled_ns exceeds this
   std::int64_t overrun_ns = 0;     ///< a frame ready later than this after the planned end cuts the trial
 };
 

@@ -11,7 +11,7 @@ namespace study {
 
 /// The kind of a timing profile. Protocols name it by its profile_word(), e.g. "hitches".
 enum class ProfileKind {
-  Moments,  ///< mean_fps and sd_fps, as in protocols of format 2
+  Moments,  ///< a frame rate with the mean mean_fps and the standard deviation sd_fps
   Hitches,  ///< a steady rate; one frame in each period stays on for hitch_ms
   Floor,    ///< 5 % of the frames (rounded up) last 1/low_fps; the others are equally long
   Trace     ///< recorded frame times, in their order, repeated or cut to the length of the stimulus
@@ -31,7 +31,7 @@ struct TimingProfile {
   double jitter = 0;
   double low_fps = 0;  ///< Floor: rate of the longest 5 % of the frames, frames/s; at most mean_fps
   std::vector<double> frame_ms = {};  ///< Trace: recorded frame times, ms
-  bool smoothed = false;              ///< Trace: as many frames in the same time, all equally long
+  bool smoothed = false;              ///< Trace: true: as many frames in the same time, but all equally long
   /// The content shown lags behind the time of its frame by this constant, ms. Real-time content only.
   double latency_ms = 0;
   /// The content's step between two frames differs from the interval between them by this much, alternately

@@ -21,11 +21,11 @@ struct PacingRules {
   FpsMean mean = FpsMean::Harmonic;
   double fps_min = 4;               ///< lowest instantaneous rate, frames/s
   std::optional<double> fps_max;    ///< highest instantaneous rate, frames/s; none: no bound
-  bool fps_max_is_refresh = false;  ///< the highest rate is the display's refresh; see for_display()
+  bool fps_max_is_refresh = false;  ///< true: the highest rate is the display's refresh rate
   double max_interval_ms = 250;     ///< longest allowed time for which a frame is shown, ms
   FrameOrder order = FrameOrder::White;
   double ar1 = 0;                   ///< requested lag-1 autocorrelation for FrameOrder::Ar1, (-1, 1)
-  std::vector<double> trace_rates;  ///< frame rates that FrameOrder::Trace takes the order from
+  std::vector<double> trace_rates;  ///< frame rates whose order FrameOrder::Trace copies
 };
 
 /// The rules for a display with the fixed refresh refresh_hz (0: none): fps_max_is_refresh is replaced by
@@ -49,7 +49,8 @@ struct FpsSetting {
 FpsSetting setting_of(const TimingProfile& profile, double duration_s);
 /// True if the intervals come from a pattern instead of a mean and a standard deviation.
 bool has_pattern(const FpsSetting& setting);
-/// The setting as messages and tables name it, e.g. "(50, 20)", or profile_text().
+/// Name of the setting in messages and tables: profile_text() of its profile or, without a profile, mean and
+/// standard deviation, such as "(50, 20)".
 std::string setting_name(const FpsSetting& setting);
 /// The number of frames of a trial, N = round(mean * duration), at least 1.
 std::int64_t frame_count(const FpsSetting& setting);

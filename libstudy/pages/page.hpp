@@ -18,7 +18,7 @@ enum class PageKey { Left, Right, Up, Down, FarLeft, FarRight, Next, Previous, E
 /// State of the answer to one question.
 struct PageItem {
   std::optional<int> chosen;           ///< chosen score of a listed kind or of a Reaction; none at first
-  std::optional<int> cursor;           ///< score marked by the arrow keys, not yet chosen
+  std::optional<int> cursor;           ///< score marked by the arrow keys, or else chosen last
   std::string typed;                   ///< typed content of a Number or Text
   std::int64_t changed_ns = 0;         ///< time of the last change, without the periods of leave_out()
   std::optional<AnswerInput> input{};  ///< input device of the last change

@@ -21,7 +21,8 @@ std::u32string characters_of(const std::string& text);
 /// The distinct characters in ascending order, without line ends and tabs.
 std::u32string characters_of(const std::vector<PlacedText>& texts);
 
-/// The name of a character in messages: "U+4E2D (中)".
+/// The name of a character in messages: "U+4E2D (中)", or only "U+00AD" if the character is invisible or
+/// combines with the character before.
 std::string name_of(char32_t character);
 
 /// Why the pages draw this character wrongly with every font, in words; empty if a font can draw it

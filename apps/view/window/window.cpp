@@ -141,7 +141,7 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
 
 /// Makes a fluid for the chosen options. If this fails, the old fluid remains and the panel shows the error.
 void Viewer::begin_anew() {
-  // Drops the choice of effects, which is of the old scene.
+  // Resets the choice of effects, which was made for the old scene.
   if (controls_.chosen.scene != running_.scene) {
     controls_.chosen.effects.reset();
     controls_.chosen.effects_off.clear();

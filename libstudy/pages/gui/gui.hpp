@@ -56,7 +56,7 @@ class Gui {
 
   ImFont* body() const { return body_; }
   ImFont* title() const { return title_; }
-  ImFont* huge() const { return huge_; }      ///< digits only
+  ImFont* huge() const { return huge_; }      ///< only characters U+0020 to U+003A, for digits and colon
   float size_px() const { return size_px_; }  ///< of body text
   float x_height_px() const;                  ///< of body text
   bool by_hand() const { return host_.by_hand; }

@@ -34,8 +34,8 @@ bool leaves_field(const PageEvent& event) {
   return event.key == PageKey::Next || event.key == PageKey::Previous;
 }
 
-// Time before the end of a black pause at which before_stimulus_ is called, ns. On a 50 Hz screen, the
-// function needs 200 ms: it finds the screen's beat (the instant of a refresh) with 10 swaps.
+// Time before the end of a black pause at which before_stimulus_ is called, ns. In a window on a 50 Hz
+// screen, the function needs 200 ms: it finds the screen's beat (the instant of a refresh) with 10 swaps.
 constexpr std::int64_t before_stimulus_ns = 250'000'000;
 
 }  // namespace
