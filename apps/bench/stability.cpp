@@ -144,8 +144,8 @@ void measure(CaseRun& job, const StabilityOptions& options, const std::function<
   }
 }
 
-/// Measures all jobs; on the CPU in parallel, one thread per job. Results do not depend on the number of
-/// threads.
+/// Measures all jobs; on the CPU, several jobs in parallel, each on one thread. Results do not depend on the
+/// number of threads.
 void measure_all(std::vector<CaseRun>& jobs, const StabilityOptions& options, sim::Backend backend) {
   base::Progress progress("cases", jobs.size() * steps_of_a_job);
   std::size_t done = 0;

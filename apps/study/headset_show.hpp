@@ -5,7 +5,7 @@ namespace apps {
 
 struct ShowChoice {
   double seconds = 0;      ///< duration in predicted display time, from the first frame
-  double patience_s = 10;  ///< longest time for which the runtime may block a frame
+  double patience_s = 10;  ///< longest time for which the runtime may block a frame, s
   double refresh_hz = 0;   ///< requested refresh rate, Hz; 0: unchanged
 };
 

@@ -12,9 +12,9 @@
 
 namespace apps {
 
-/// While this object exists, SIGINT, SIGTERM, SIGPIPE and SIGHUP stop the session at the next frame, so that
-/// closing the terminal ends the session cleanly. SIGHUP stays ignored if the program started with it
-/// ignored, as under nohup.
+/// While this object exists, the signals SIGINT, SIGTERM, SIGPIPE and SIGHUP set stop_requested(). Sessions
+/// and bakes then end cleanly at the next frame, also when the terminal is closed. SIGHUP stays ignored if
+/// the program started with SIGHUP ignored, as under nohup.
 class StopSignals {
  public:
   StopSignals();
@@ -72,8 +72,9 @@ void end_command(const std::filesystem::path& database, const Played& played);
 /// The exit statuses as text for --help.
 extern const char* const exit_status_help;
 
-/// Prints one line per setting of the frame rate: nominal and realised mu and delta, late frames, verdicts
-/// and grade. Prints nothing if no schedule was played.
+/// Prints the timing certificate of a run: a heading; for each cell whose showings were answered, a line with
+/// nominal and realised mean and standard deviation of the frame rate, late frames, verdicts and grades; the
+/// number of trials that pass.
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol);
 

@@ -19,10 +19,10 @@ struct DeskChoice {
 
 struct DeskWords {
   std::string go_on, confirm, finish, rest, pause, ready;
-  std::string first, second;           ///< announce the two stimuli of a pair
-  std::string held_title, held;        ///< shown while the experimenter pauses the session
-  std::string trouble_title, trouble;  ///< shown if a trial cannot be shown
-  std::string corner, begin;           ///< how to stop: a note on every page, a sentence on the first page
+  std::string first, second;                  ///< announce the two stimuli of a pair
+  std::string held_title, held;               ///< shown while the experimenter pauses the session
+  std::string trouble_title, trouble;         ///< shown if a trial cannot be shown
+  std::string corner, begin;                  ///< how to stop: a note on pages, a sentence on the first page
   std::string corner_by_hand, begin_by_hand;  ///< as `corner` and `begin`, in a headset
   std::string by_ray, by_stick, by_dwell;     ///< how to answer in a headset, as sentences
   std::string one_open, many_open;            ///< "{}" stands for the number of open questions

@@ -14,7 +14,7 @@ namespace study {
 /// Shows the middle of the left eye's view, at most ten times a second. A separate thread draws the view in
 /// an OpenGL context that shares the headset's pictures, reads the pixels back and shows them in the window.
 /// The window has a second context, because the headset's OpenGL may be on another display or device. The
-/// session's thread never waits for the mirror's thread. A GPU draws for one context at a time, so that a
+/// session's thread does not wait while the mirror draws. A GPU draws for one context at a time, so that a
 /// frame of the headset may wait until one strip of the mirror's picture is drawn (mirror_picture.cpp).
 class HeadsetMirror {
  public:
