@@ -111,7 +111,6 @@ std::vector<measure::EffectCost> costs_of(const sim::Scene& scene, const Effects
   return costs;
 }
 
-/// Prints the results as a table and writes them to the requested files.
 template <class Costs>
 void tell(const EffectsOptions& options, const measure::EffectsRun& run, const Costs& costs) {
   const figures::TextTable table = measure::to_table(run, costs);

@@ -52,7 +52,6 @@ base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   return out;
 }
 
-/// The divergence as JSON; null if the run did not diverge.
 base::Json divergence_json(const std::optional<sim::Divergence>& divergence) {
   if (!divergence) return {};
   base::Json out{{"frame", divergence->frame},

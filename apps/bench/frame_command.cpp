@@ -38,7 +38,6 @@ constexpr const char* floors_help =
     "take\n"
     "less than its floor. - stands where nothing is known.";
 
-/// Adds an option for each number of the solver.
 void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
   for (const sim::SolverNumber& number : sim::solver_numbers()) {
     std::visit(
@@ -160,7 +159,6 @@ void take_setting(FrameOptions& options) {
   if (const auto tau = options.fluid.temporal.fixed_tau) options.tau = "fixed:" + base::shortest(*tau);
 }
 
-/// Runs the requested frames, prints the results and returns them.
 base::Json run(const FrameOptions& options) {
   if (options.peers) return run_peers(options);
   base::Json result = run_frames(options);

@@ -30,13 +30,11 @@ void wait_passively(char** argv) {
   execv(program.c_str(), argv);  // returns only if it fails; the program then continues without the setting
 }
 
-/// Text of --version: the version and the build options.
 std::string version_text(const std::string& program) {
   return program + " " + base::version() + "\nbuilt " + base::built_utc().substr(0, 10) + ": " +
          base::build_options();
 }
 
-/// Runs the command line; returns the exit status.
 int run_commands(CLI::App& app, int argc, char** argv) {
   try {
     check_arguments(argc, argv);

@@ -160,7 +160,6 @@ void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   base::write_file_atomically(command.out, text);
 }
 
-/// The remedy in the error of a fit that failed.
 std::string mend_of(const study::PilotFit& fit) {
   if (!fit.level_within_scale()) return study::mend_of_level(fit.data.question);
   return "collect more answers, or choose another --level";

@@ -49,7 +49,6 @@ std::string interval_text(const study::Json& ci) {
   return "[" + number_text(ci[0], digits) + ", " + number_text(ci[1], digits) + "]";
 }
 
-/// Heading of the column of intervals, such as "95 % interval".
 std::string interval_head(const study::Json& json) {
   return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
 }

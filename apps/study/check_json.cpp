@@ -27,7 +27,6 @@ base::Json setting_json(const study::CheckedSetting& checked, const study::Refre
   return json;
 }
 
-/// The level of effects; null if the design does not vary effects.
 base::Json effects_json(const study::StimulusSpec& what) {
   return what.effects.empty() ? base::Json() : base::Json(what.effects);
 }
@@ -115,7 +114,6 @@ base::Json analyses_json(const study::Protocol& protocol) {
   return {{"tested", tested}, {"fitted", fitted}, {"not_tested", not_tested}};
 }
 
-/// Factors, cells and procedure of a protocol that has factors.
 void add_factors(base::Json& json, const study::Design& design) {
   for (const study::DesignFactor& factor : design.factors)
     json["factors"].push_back(

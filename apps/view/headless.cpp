@@ -64,7 +64,7 @@ class PictureFolder {
  private:
   std::string folder_;
   std::vector<OverlayKind> overlays_;
-  std::vector<std::string> legends_;  // legends of the pictures of the last frame
+  std::vector<std::string> legends_;
   int written_ = 0;
 };
 

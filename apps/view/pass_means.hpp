@@ -37,7 +37,7 @@ class PassMeans {
   };
   std::vector<sim::StageTime> passes_;
   std::deque<Frame> frames_;
-  double seconds_ = 0;  ///< total duration of all stored frames
+  double seconds_ = 0;
 };
 
 }  // namespace apps

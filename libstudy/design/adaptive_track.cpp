@@ -70,7 +70,6 @@ std::vector<TrackStep> steps_of(const Protocol& protocol, const std::vector<int>
   return out;
 }
 
-/// Values on the stimulus axis of the cells of a track.
 std::vector<double> values_of(const Design& design, const std::vector<int>& cells) {
   std::vector<double> out;
   for (const int cell : cells)

@@ -175,7 +175,6 @@ void Panel::draw_effects(Controls& controls) {
   ImGui::Separator();
 }
 
-/// Draws the table of the solver's passes in their order.
 void Panel::draw_schedule(const PassMeans& passes) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x - 12, 12}, ImGuiCond_Once, {1, 0});

@@ -36,7 +36,6 @@ sim::Scene as_listed(const PreparedFluid& prepared) {
   return out;
 }
 
-/// A running fluid and its picture.
 struct Running {
   explicit Running(PreparedFluid fluid)
       : prepared(std::move(fluid)),

@@ -24,7 +24,6 @@ int digit_of(int key) {
   return -1;
 }
 
-/// The page key; none if the key has no meaning on a page.
 std::optional<PageKey> page_key(int key, bool shift) {
   switch (key) {
     case GLFW_KEY_LEFT:
@@ -65,7 +64,6 @@ std::string letter_of(int key) {
   return name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0' ? name : "";
 }
 
-/// The event of a pressed key.
 PageEvent event_of(int key, bool shift) {
   PageEvent event;
   event.letters = letter_of(key);
