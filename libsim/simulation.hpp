@@ -95,9 +95,11 @@ struct SimulationOptions : SolverNumbers {
 /// Counts of guard interventions since the simulation was made: each count says how often one rule stepped
 /// in.
 struct GuardCounts {
-  /// times that the speed of a particle or a free body was limited; a particle counts up to twice per substep
+  /// times that the speed of a particle or a free body was limited; a particle counts up to twice per
+  /// substep, and up to three times with the effect viscosity
   std::uint64_t speed_limited = 0;
-  /// neighbours at zero distance, counted in each projection; a pair counts twice
+  /// neighbours closer than 1e-5 of the pair's support, counted in each density pass; a pair of solved
+  /// particles counts twice
   std::uint64_t coincident_pairs = 0;
   /// particle-substeps in which a particle was quarantined: its position or velocity was NaN or infinite, or
   /// it was far outside the tank
@@ -118,13 +120,13 @@ struct GuardCounts {
 struct LevelEvents {
   std::uint64_t splits = 0;
   std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 per split
-  std::uint64_t merges = 0;          ///< pairs merged into one particle
+  std::uint64_t merges = 0;          ///< merges; each removes one particle
   std::uint64_t split_deferred = 0;  ///< particle-turns in which Readings::split_share delayed a split
   /// particle-turns in which no children fitted between the walls and obstacles
   std::uint64_t split_at_wall = 0;
   std::uint64_t split_no_room = 0;  ///< particle-turns in which a split exceeded the capacity
-  /// particle-turns in which a particle found no partner, because the merged particle would overlap a coarser
-  /// one or an obstacle
+  /// particle-turns in which a particle found no partner, and at least one candidate was refused because the
+  /// merged particle would overlap a coarser particle or an obstacle
   std::uint64_t merge_overlap = 0;
   /// particle-turns in which a neighbour of a finer level or target prevented a merge
   std::uint64_t merge_step = 0;
@@ -179,7 +181,7 @@ struct RelaxedStart {
   double compression = 0;  ///< remaining mass-weighted mean of max(rho / rho_0 - 1, 0)
 };
 
-/// Heat divided by the water's specific heat, in m_* K, for temperatures above the reference temperature; all
+/// Heat divided by the water's specific heat, in m_* K, relative to water at the reference temperature; all
 /// zero unless the scene lists the effect heat. poured: brought in by nozzles; taken: removed with water that
 /// nozzles take from the tank; drained: lost through outlets. held + taken + drained - poured - from_walls is
 /// constant.
@@ -200,7 +202,7 @@ struct FoamReport {
 
 /// State of the fluid after a frame.
 struct FrameReport {
-  int frame = 0;          ///< frames since the gate opened
+  int frame = 0;          ///< as Simulation::frame()
   SubstepCount substeps;  ///< of the last frame
   double time_s = 0;
   std::int64_t particles = 0;
@@ -254,9 +256,9 @@ class Simulation {
   /// True if this run computes saliency from the picture passed to look(); if false, the caller need not read
   /// the picture back from the renderer.
   virtual bool follows_picture() const = 0;
-  /// Frames since the gate opened.
+  /// Number of frames since the water's settling ended (frame 0), including SimulationOptions::start_frame.
   virtual int frame() const = 0;
-  /// Simulated time since the gate opened, s.
+  /// Simulated time since frame 0, s.
   virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
@@ -269,12 +271,13 @@ class Simulation {
   virtual void change(const LiveNumbers&) {}
   /// Replaces the list of effects from the next frame on. The schedule is compiled anew. Particles,
   /// velocities, levels and guard counts stay. A new effect starts as in a new run: temperatures from the
-  /// scene's boxes, foam without particles. Effects that stay keep their state. The number of substeps
-  /// follows the new effects. From then on the run is bit for bit equal to a run without the removed effects
-  /// that starts from this state. Columns of removed effects are freed. base::Error, with nothing changed:
-  /// check_effects refuses the list, it needs more substeps than the options or the program allow, or the
-  /// foam particles are so small that a frame could create more than an int can count. base::Error, after
-  /// which the simulation cannot be used: the device is out of memory.
+  /// scene's boxes, foam without particles. Effects that stay keep their state, but foam begins anew
+  /// if its most_particles changed. The number of substeps follows the new effects. From then on the run is
+  /// bit for bit equal to a run without the removed effects that starts from this state. Columns of removed
+  /// effects are freed. base::Error, with nothing changed: check_effects refuses the list, it needs more
+  /// substeps than the options or the program allow, or the foam particles are so small that a frame could
+  /// create more than an int can count. base::Error, after which the simulation cannot be used: the device is
+  /// out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
   /// Sets the duration of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
@@ -302,7 +305,7 @@ class Simulation {
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
   /// Saliency from which the present target levels were computed, in the order of read_particles. Children
-  /// and merged particles inherit their parents' value. Without
+  /// copy their parent's value; a merged particle keeps the value of one of its parents. Without
   /// SimulationOptions::saliency_parts the fields other than s and target are 0. Empty at frame 0, and in
   /// runs that compute neither saliency nor gaze targets.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;

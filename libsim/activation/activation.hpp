@@ -58,8 +58,9 @@ constexpr std::uint8_t rest_sparse = 0x80;
 /// plus a fifth of the neighbours' 0.806.
 constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
-/// Replaces sparse_density in scenes with the effect cohesion (surface tension): the mean velocity change of
-/// a cell does not contain the accelerations at the water's surface.
+/// Replaces sparse_density in scenes with the effect cohesion (surface tension). Particles at the water's
+/// surface are then always solved, because the mean velocity change of a cell does not contain their
+/// acceleration by the tension.
 constexpr float surface_density = 0.98f;
 
 /// Value of Column::Active: the particle is solved, but excluded from the sums over solved particles
@@ -108,8 +109,8 @@ struct Activation {
   Scanner scanner;
 
   /// Fills `slots` with the active particles first, for the passes of a substep; slot_of is the inverse of
-  /// slots. Active particles also read the values of inactive neighbours, so this sets lambda = 0, density =
-  /// rho_0 and PredictedNext = Predicted for all inactive particles.
+  /// slots. Active particles also read the values of inactive neighbours, so this sets Lambda = 0, Density =
+  /// 1 (rho_0) and PredictedNext = Predicted for all inactive particles.
   void list_active(ActiveListView particles);
   std::size_t bytes() const;
 };

@@ -13,8 +13,8 @@ struct CountBirths {
   }
 };
 
-/// Lists the source of each new particle, and the particle's index among the children of this source. `sums`:
-/// inclusive prefix sums of `births`.
+/// Lists, for each particle of the new arrays, its source in the old arrays and its index among the particles
+/// made from this source. `sums`: inclusive prefix sums of `births`.
 struct ListSources {
   const int* births;
   const int* sums;

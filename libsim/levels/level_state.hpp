@@ -54,17 +54,18 @@ struct LevelRules {
   /// So particles of sheets and drops never merge beyond merge_reach.
   float inside_count = 30;
   bool relays = true;  ///< particles without a merge partner may merge through a coarser particle
-  /// Minimum distance between coarser particles and a particle that merges through a heavier one (relay.cpp),
-  /// as a share of the sum of their radii. It is smaller than merge_overlap: some overlap is accepted in
-  /// order to remove the last particles of a level among coarser water.
+  /// Minimum distance between coarser particles and the result of a merge through a relay of more than twice
+  /// the mass of each merging particle (relay.cpp), as a share of the sum of their radii. It is smaller than
+  /// merge_overlap: some overlap is accepted in order to remove the last particles of a level among coarser
+  /// water.
   float stranded_overlap = 0.5f;
   /// Smallest share of its density constraint that a particle enforces (Easing::share), while the youngest
   /// particle within its support is 0, 1, ... frames old. So overlaps after a split or a merge separate
   /// gradually.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
-  /// Number of projections of the particles near ones that just split or merged, at the beginning of a
-  /// frame's first substep (parting.cpp). These projections change positions, not velocities.
+  /// Number of projections, at the beginning of a frame's first substep, of the particles that just split or
+  /// merged and of the particles near them (parting.cpp). These projections change positions, not velocities.
   int partings = 3;
   /// Replaces `partings` in short substeps: if g dt^2, the distance by which gravity moves a particle in a
   /// substep, is less than the share `parts_widely` of the finest support. The neighbours of the moved
@@ -81,13 +82,13 @@ struct LevelRules {
 struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
   std::uint64_t born;            ///< particles added by splits: 2^k - 1 per split
-  std::uint64_t merges;          ///< pairs merged into one particle, each removing one
+  std::uint64_t merges;          ///< merges; each removes one particle
   std::uint64_t split_deferred;  ///< particle-turns in which LevelRules::split_share delayed a split
   /// particle-turns in which no children fitted between the walls and obstacles
   std::uint64_t split_at_wall;
   std::uint64_t split_no_room;  ///< particle-turns in which a split exceeded the capacity
-  /// particle-turns in which a particle found no partner, because the merged particle would overlap a coarser
-  /// one or an obstacle
+  /// particle-turns in which a particle found no partner, and at least one candidate was refused because the
+  /// merged particle would overlap a coarser particle or an obstacle
   std::uint64_t merge_overlap;
   /// particle-turns in which a neighbour of a finer level or target prevented a merge
   std::uint64_t merge_step;
@@ -107,7 +108,7 @@ using NewLevelsView = ColumnView<columns(Column::Level),
 struct LevelState {
   LevelRules rules;
   TargetSphere forced;
-  std::uint32_t frame = 0;  ///< counter for the random numbers
+  std::uint32_t frame = 0;  ///< number of past turns; part of the key of the random numbers
   LevelTurns turns;         ///< the frames that update saliency, splits and merges
   /// a particle split or merged in this frame, or could have split but for the capacity
   bool changed = false;
@@ -127,8 +128,8 @@ struct LevelState {
   /// number of particles that replace each particle: 1 if it does not change, 0 if it merged into another
   Array<int> births;
   Array<int> places;  ///< first the mutual merge partners, later the inclusive sums of births
-  /// order: first the splits by priority, later the source of each new particle; child: index of the new
-  /// particle among the children of its source
+  /// order: first the splits by priority, later the source in the old arrays of each particle of the new
+  /// arrays; child: index of this particle among the particles made from its source
   Array<int> order, child;
   /// flags or numbers, and their prefix sums: of splits, of the particles that each split adds, of free ids,
   /// of new children

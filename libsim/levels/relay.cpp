@@ -26,8 +26,7 @@ struct Stranded {
 /// Two stranded particles merge through a coarser particle between them, the relay. Otherwise the last
 /// particles of a level, which are too far apart to merge directly, would remain. A relay with twice a
 /// stranded particle's mass gives each of the two a half of itself: particles of masses 1, 2, 1 become two of
-/// mass 2. No particle moves farther than in a direct merge. A heavier relay does not change: the two
-/// particles that it selected merge at their midpoint.
+/// mass 2. A heavier relay does not change: the two particles that it selected merge at their midpoint.
 template <class Boundary>
 struct Bid {
   const Vec4* position;

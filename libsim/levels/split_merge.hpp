@@ -72,9 +72,8 @@ struct LevelFluid {
 };
 
 /// True if particle i is surrounded by water, or by water and walls: it has at least `least` neighbours, or
-/// fewer beside a wall. Neighbours count with a weight. Neighbour lists contain coarser neighbours up to a
-/// larger distance, so a coarser neighbour counts as more than one. Its weight is below the ratio of the
-/// masses.
+/// fewer beside a wall. Neighbour j of support h_j has the weight (h_j / h)^3, with the mean support h of
+/// the pair: fewer coarse than fine particles fit within the distance h, so coarse neighbours weigh more.
 template <class Boundary, class Team>
 SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const ParticleNeighbours& neighbours,
                          int i, float least, Team team) {

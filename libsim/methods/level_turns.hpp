@@ -5,10 +5,13 @@
 
 namespace sim {
 
-/// Decides which frames are turns. Splits and merges visibly disturb the water: a turn in every frame costs
-/// more time and gives worse pictures than a turn in every fourth frame (docs/decisions.md).
+/// Decides which frames are turns. Splits and merges visibly disturb the water: compared with a turn in every
+/// fourth frame, a turn in every frame costs more time, and gives worse pictures in two of the three measured
+/// scenes (docs/decisions.md).
 struct LevelTurns {
-  bool due = true;       ///< the present frame is a turn; always true if a test gives targets
+  /// the present frame is a turn; stays true in a run that never calls begin_frame(), such as one with forced
+  /// targets
+  bool due = true;
   int frames_since = 0;  ///< frames since the last turn; 0: there was none
   int in_a_row = 0;      ///< number of following frames that are turns although the period has not passed
 

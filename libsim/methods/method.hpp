@@ -10,7 +10,7 @@ namespace sim {
 
 enum class MethodKind { LoRes, HiRes, FovFluid, Ours, OursTsp };
 
-/// Levels that a particle's mass can have: 2^0 .. 2^3 times m_*.
+/// Number of mass levels, 0 .. 3. A particle of level l has 2^l times m_*, the mass of the finest particles.
 inline constexpr int most_levels = 4;
 
 /// Source of the level that a particle should have.
@@ -21,7 +21,7 @@ enum class TargetSource {
   Saliency  ///< visual saliency, Eq. 1-9
 };
 
-/// A method as a selection of stages; no method has code of its own.
+/// The properties of a method, from which the schedule selects the solver's stages.
 struct MethodTraits {
   MethodKind kind{};
   const char* name = "";
@@ -48,9 +48,9 @@ std::string method_names();
 /// base::Error outside 64 .. 4,194,304 (4096k), and for other texts.
 std::int64_t parse_n_star(std::string_view text);
 
-/// Number of particles at frame 0, with those that obstacles displace: 8 n_* for a method that starts at
-/// level 0, n_* for one that starts at level 3. LoRes and HiRes keep their number of particles in
-/// scenes without outlets.
+/// Number of particles at frame 0 if no obstacle displaces water: 8 n_* for a method that starts at level 0,
+/// n_* for a method that starts at level 3. In scenes without outlets, the number of particles of LoRes and
+/// HiRes does not change during a run.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

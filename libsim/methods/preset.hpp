@@ -19,18 +19,20 @@ std::string preset_name(Preset preset);
 /// minimum angle of resolution in Guenter et al. 2012. Smoothstep: to 0 at 30 deg.
 enum class AcuityFalloff { Hyperbolic, Steep, Smoothstep };
 /// Eq. 6: distance over which gradients are measured. OneSupport: the support h_i, so the solver's
-/// neighbours. Smoothed: h_i, but both the values and the gradients are averaged over the support, so that
-/// the result depends on water up to two supports away. TwoSupports: 2 h_i as printed, with eight times as
-/// many neighbours.
+/// neighbours. Smoothed: h_i; the values are averaged over the support before the gradients are computed,
+/// and the gradients are averaged afterwards, so that the result depends on water up to three supports away.
+/// TwoSupports: 2 h_i as printed, with eight times as many neighbours.
 enum class GradientReach { OneSupport, Smoothed, TwoSupports };
 /// Eq. 7: gamma_t, by which the temporal feature of a particle under water of thickness d, in m, is divided.
 /// Min: min(e^(d/2), 5), which distinguishes thicknesses up to 3.2 m. Max: max(e^(d/2), 5), as printed.
 enum class ThicknessWeight { Min, Max };
 /// Eq. 9: the range of F that maps to s = 0 .. 1. Percentile: from the 1st to the 98th percentile by mass,
-/// averaged over recent frames. MinMax: from the minimum to the maximum.
+/// smoothed over frames. MinMax: from the frame's minimum to its maximum. Also selects the range of the
+/// importance of Eq. 12 (ActivationRules::robust_range).
 enum class Normalisation { Percentile, MinMax };
 
-/// All switches; each comment names the paper's equation. d_* is the diameter of the finest particles.
+/// All switches. Comments name the paper's equation if the switch belongs to one. d_* is the diameter of the
+/// finest particles.
 /// Without gravity, 0.01 d_* per frame replaces the speed sqrt(g d_*) in Eq. 6, 13 and 14.
 struct Readings {
   // Eq. 1-9: saliency
@@ -44,9 +46,8 @@ struct Readings {
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
   bool hide_manifold_behind = false;                 ///< f_m of Eq. 5 is divided by gamma_t of Eq. 7
   GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6: reach of the gradients
-  /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. In still water,
-  /// 0.3 causes two thirds of the splits that 1 causes; 0.1 causes less than half of the splits that 1
-  /// causes.
+  /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. Smaller weights
+  /// cause fewer splits in still water.
   double temporal_follow = 0.2;
   /// Minimum number of frames between two measurements of the temporal feature and of the range of Eq. 9. The
   /// smoothing then takes one step for each frame that passed. Acuity and manifold are measured in every turn
@@ -55,18 +56,17 @@ struct Readings {
   /// Eq. 6: gradients are multiplied by h_i, which makes them dimensionless; false: they stay in 1/m.
   bool dimensionless = true;
   /// Eq. 6: speed_floor is epsilon_v as a share of sqrt(g d_*), density_floor is epsilon_rho as a share of
-  /// rho_0. Without these floors the jitter of still water is salient; splits and merges cause a jitter of
-  /// 0.2 to 0.3 sqrt(g d_*). In still water, the rank correlation between the target levels with
-  /// GradientReach::Smoothed and those with TwoSupports is 0.86 at a speed_floor of 0.1, 0.92 at 0.25 and
-  /// 0.96 at 1.
+  /// rho_0. Without these floors, the jitter that splits and merges cause in still water would be salient.
   double speed_floor = 1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
-  /// Speed below which water counts as at rest, as a share of sqrt(g d_*); 0 = no water counts as at rest.
+  /// Limit speed of water at rest, as a share of sqrt(g d_*); 0 = no water counts as at rest. kick_filter and
+  /// calm_viscosity weaken as the speed rises to this limit. calm_floor applies in full up to about this
+  /// speed and falls to 0 at 1.5 times it.
   double calm_speed = 0.65;
-  /// Eq. 6: in water at rest only the part of the temporal feature above this value counts. Otherwise the
-  /// motion that splits and merges cause would trigger further splits. Levels use this floor; masks and
-  /// figures do not.
+  /// Eq. 6: in water at rest this value is subtracted from the temporal feature, down to 0 at least, before
+  /// gamma_t divides the feature. Otherwise the motion that splits and merges cause would trigger further
+  /// splits. Simulation::measure_saliency does not subtract it.
   double calm_floor = 0.3;
   /// Eq. 9: lower limit of the F that maps to s = 1; if all F are smaller, no particle has s = 1
   double saliency_floor = 0.1;
@@ -121,9 +121,9 @@ struct Readings {
   /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
   int longest_rest_frames = 1;
   /// Minimum number of consecutive frames in which a particle is solved after inactive frames; without effect
-  /// if longest_rest_frames is 0. The centre of mass of a dam of 32,768 particles at beta 0.3 was compared
-  /// with a full solve for 10 s and four seeds. With least_work_frames = 2 it deviated by 1.3 to 1.9 % and 82
-  /// % of the particles were solved; with 1 it deviated by 2.0 to 2.3 % and 76 % were solved.
+  /// if longest_rest_frames is 0. The centre of mass of a dam at beta 0.3 was compared with a full solve for
+  /// 10 s (docs/decisions.md). With least_work_frames = 2 it deviated by 1.3 to 1.9 % of its height, and 82 %
+  /// of the particles were solved. With 1 it deviated by 2.0 to 2.2 %, and 76 % were solved.
   /// longest_rest_frames + least_work_frames <= 14.
   int least_work_frames = 2;
   /// Inactive particles add the mean velocity change of the solved particles in their cell; false: they take

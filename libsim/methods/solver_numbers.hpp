@@ -12,10 +12,11 @@ namespace sim {
 // without "--", default, least, most, meaning with its unit). A row defines a member of SolverNumbers, a
 // member of SolverParameters, which stages read, an option of programs, and a part of the keys of settled
 // states and saved runs. relaxation: one number for all levels, epsilon_i = relaxation / (m_i d_i^2), with
-// the particle diameter d_i. tensile: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; with 0 the solver runs a
-// GPU or CPU kernel without this term. momentum: in a substep's first projection it counts as 0.
-// coarse_cycles: 0 omits the coarse pressure. coarse_edge: wanted edge of the cells; the actual edge is
-// adjusted so that a whole number of cells fits between the walls.
+// the mass m_i and the diameter d_i of particle i. tensile: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4 for
+// a pair i, j with the kernel W, the mean diameter d and the mean support h; with 0 the solver runs kernels
+// without this term. momentum: in a substep's first projection it counts as 0. coarse_cycles: 0 omits the
+// coarse pressure. coarse_edge: wanted edge of the cells; the actual edge is adjusted so that a whole number
+// of cells fits between the walls.
 #define SIM_SOLVER_NUMBERS(NUMBER)                                                                   \
   NUMBER(float, relaxation, "relaxation", 0.01f, 0, 100, "Constraint relaxation")                    \
   NUMBER(float, tensile, "tensile", 0, 0, 100, "s_corr strength")                                    \
@@ -26,9 +27,9 @@ namespace sim {
   NUMBER(int, coarse_cycles, "coarse-cycles", 2, 0, 16, "V-cycles of the coarse pressure; 0 = none") \
   NUMBER(float, coarse_edge, "coarse-edge", 2, 0.5, 8, "Edge of the coarse pressure's cells, in h")
 
-/// Numbers of the solver that a program sets. A member that still has the value given here is not set: the
-/// solver then uses the scene's value, for the numbers of substeps the speed of the water, and for the
-/// members of SIM_SOLVER_NUMBERS the measured default.
+/// Numbers of the solver that a program sets. A member that still has the value given here is not set. The
+/// solver then chooses the number of substeps by the water's speed, uses the measured defaults of the members
+/// of SIM_SOLVER_NUMBERS, and the scene's values of the others.
 struct SolverNumbers {
   static constexpr int most_iterations = 64;
   int iterations = 0;          ///< constraint projections per substep; 0 = the scene's

@@ -76,8 +76,7 @@ struct OrderWithinCells {
   const int* id;
   int* order;
 
-  /// Cells with more particles than this use heap sort, because pairwise counting is quadratic. One test,
-  /// for example, puts all particles into one cell.
+  /// Cells with more particles than this use heap sort, because the time of pairwise counting is quadratic.
   static constexpr int crowd = 64;
 
   SIM_FN bool before(int a, int b) const { return id[a] < id[b] || (id[a] == id[b] && a < b); }

@@ -32,7 +32,7 @@ struct Calm {
   float inverse_square = 0;  ///< 1 / limit speed^2, s2/m2; 0 = no particle is at rest
   float most = 0;            ///< value at speed 0: 1, or 0 if no particle is at rest
 
-  // Without branches, so that loops vectorise.
+  // Contains no branch, so that loops that call this operator vectorise.
   SIM_FN float operator()(float vx, float vy, float vz) const {
     return at_least(most - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
   }

@@ -22,11 +22,12 @@ enum class Life {
 };
 
 /// Rule for a column's values when a split or a merge makes particles. MassMean, Sum, Max and Reset need no
-/// other code: splits, merges and nozzles apply them, and their columns start at 0.
+/// other code: splits and merges apply them, new particles from nozzles get 0, and their columns start at 0
+/// unless other code sets them (Age starts at 255).
 enum class Descent {
   None,  ///< no values: the column is scratch
   Own,   ///< set by the passes that split, merge and add particles
-  Copy,  ///< children copy the parent's value; a merged particle keeps the value of the one that remains
+  Copy,  ///< children copy the parent's value; a merged particle keeps the value of one of the two
   /// children copy the parent's value; a merged particle gets the mean by mass: mass x value is conserved
   MassMean,
   /// each of n children gets 1 / n of the parent's value; a merged particle gets the sum: the total is
@@ -60,7 +61,9 @@ enum class Descent {
 //                   dimensionless, or another vector
 //   Ease            share (0, 1] of the density constraint that a particle enforces; below 1 near particles
 //                   that a split or a merge has just made
-//   Age             frames since a split or a merge made the particle, at most 255
+//   Age             frames since a split, a merge or a nozzle made the particle, at most 255; 255 for
+//   particles
+//                   of the start
 //   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
 //   Rest            counter of the frames in which the particle was not solved and of the solved frames after
@@ -129,16 +132,14 @@ constexpr ColumnSet columns(Columns... which) {
 }
 constexpr ColumnSet all_columns() { return {(std::uint32_t{1} << static_cast<unsigned>(Column::count)) - 1}; }
 
-// Functions for kernels that split and merge columns whose rule is by_rule().
-
 /// True for the rules that kernels carry out alike for every column: mean by mass, sum, maximum, reset.
 constexpr bool by_rule(Descent rule) {
   return rule == Descent::MassMean || rule == Descent::Sum || rule == Descent::Max || rule == Descent::Reset;
 }
 
 /// True if a column of type T may have this lifetime and rule: scratch columns have no rule and all others
-/// have one. Mean and sum need float; bytes allow maximum and reset; other types are copied or handled by
-/// name.
+/// have one. Of the rules of by_rule(), a float column may have each, a byte column Max and Reset, and
+/// columns of other types none.
 template <class T>
 constexpr bool may_descend(Life life, Descent rule) {
   if ((life == Life::Scratch) != (rule == Descent::None)) return false;
@@ -170,8 +171,8 @@ constexpr int ruled_count() {
   return sum;
 }
 
-/// All columns whose rule is by_rule(). They start at 0, so that passes may read them before any pass writes
-/// them.
+/// All columns whose rule is by_rule(). They have values at the start of a run, so that passes may read them
+/// before any pass writes them.
 constexpr ColumnSet ruled_columns() {
   ColumnSet out;
 #define SIM_ADD(Name, member, Type, life, rule) \

@@ -14,7 +14,7 @@ enum class Trouble : std::uint8_t {
   FarOutside,         ///< beyond a wall by more than ten times the tank's longest side
   TooFast,            ///< slowed by the speed limit
   NeighboursDropped,  ///< some of its neighbours were dropped, because the memory for lists was full
-  Coincident,         ///< another particle has the same position
+  Coincident,         ///< closer to another particle than 1e-5 of the pair's support
   TooDense            ///< denser than Divergence::most_density after the frame's last projection
 };
 

@@ -26,8 +26,10 @@ struct FreeBody {
 struct BodyTurn {
   Vec3 along, round;
 };
-/// A body in a system of equations for velocities (libsim/solver/effects/sticking.hpp). For a body that is
-/// not free, each BodyTurn contains momentum, m_* m/s, and its moment, m_* m2/s, instead.
+/// A body in a system of equations for velocities, solved by conjugate gradients
+/// (libsim/solver/effects/sticking.hpp). gained: the solution so far. residual, direction, and bent = A
+/// direction: vectors of the conjugate gradients, with the system's matrix A. For a body that is not free,
+/// each BodyTurn contains momentum, m_* m/s, and its moment, m_* m2/s, instead.
 struct BodyRow {
   BodyTurn gained, residual, direction, bent;
   /// momentum, and its moment about the centre, received from particles in one pass, in BodyRows::unit

@@ -22,8 +22,7 @@ struct Kernel {
   float h, h2, poly6, spiky;
 
   SIM_FN explicit Kernel(float support_radius) : Kernel(support_radius, 1 / support_radius) {}
-  /// From h and 1 / h. All powers come from this one quotient, because three quotients per pair would take as
-  /// long as the rest of the pair's work.
+  /// From h and 1 / h. All powers of 1 / h are products of this quotient, because divisions are slow.
   SIM_FN Kernel(float support_radius, float inverse) : h(support_radius), h2(h * h) {
     const float inverse3 = inverse * inverse * inverse;
     spiky = 45 / (pi * lattice_density) * (inverse3 * inverse3);

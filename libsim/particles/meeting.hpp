@@ -117,8 +117,8 @@ struct Meeting {
       return room.rates[b].velocity + cross(room.rates[b].spin, x - room.start[b].centre);
     }
 
-    /// Sets each body's position and velocities at the substep's start. Free bodies first get the speed that
-    /// gravity and water cause.
+    /// Sets the position and the velocities of body b at the substep's start. A free body's velocities
+    /// already include the changes by gravity and the water (BodyDrive).
     SIM_FN void begin(int b) const {
       if (m.drive.first) m.by_others[b] = {0, 0, 0};
       Body body = m.bodies[b];
@@ -166,7 +166,7 @@ struct Meeting {
       const float reach = feelers_of(a).reach() + far;
       const Vec3 centre = room.start[a].centre;
       if (length(centre - room.start[b].centre) > reach + feelers_of(b).reach()) return false;
-      // Beyond its grid a mesh gives no bound on the distance.
+      // Outside its grid, a mesh's distance may exceed the true distance, so a mesh always passes this test.
       return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
     }
 

@@ -24,7 +24,7 @@ struct MeshGrid {
 
   /// Distance and normal of the mesh at p, in the body's axes. Between nodes the distance is trilinear, and
   /// the normal is its gradient. Beyond the grid both refer to the surface point found from the nearest point
-  /// of the grid. Not inlined, so that kernels contain only the call in scenes without meshes.
+  /// of the grid. Not inlined: kernels that also serve scenes without meshes contain only the call.
   SIM_FN_APART NearSurface near(Vec3 p) const {
     const Vec3 most{static_cast<float>(nx - 1), static_cast<float>(ny - 1), static_cast<float>(nz - 1)};
     const Vec3 cells = (1 / step) * (p - low);

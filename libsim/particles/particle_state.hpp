@@ -20,7 +20,8 @@ struct ParticleState {
 /// Quantity of a particle that pictures show as colours.
 enum class ParticleField {
   Speed,         ///< m/s
-  DensityError,  ///< rho / rho_0 - 1 in the last projection; rho includes the kernel's share behind walls
+  DensityError,  ///< rho / rho_0 - 1 in the last projection; rho counts the space behind walls and in
+                 ///< obstacles as water
   Active,        ///< 1 = solved in the last frame, 0 = moved by the velocity grid
   Temperature    ///< K above the reference of the effect heat; 0 without the effect
 };

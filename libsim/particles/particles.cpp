@@ -184,7 +184,8 @@ void Particles::reorder(const Array<int>& order) {
   const auto ints = kept_columns<int>();
   const auto parts = kept_columns<SaliencyParts>();
   auto& c = columns_;
-  // Scratch columns that no pass reads after a sort serve as its destination.
+  // PredictedNext and VelocityNext serve as destinations, because no pass reads their values after a
+  // reordering.
   auto& predicted_to = has(Column::PredictedNext) ? c.predicted_next : spare_b_;
   auto& velocity_to = has(Column::VelocityNext) ? c.velocity_next : spare_c_;
   for_each("reorder", n,

@@ -13,8 +13,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Counts of guard interventions on the device. sim::GuardCounts explains the counts, and passes them to
-/// programs.
+/// Counts of guard interventions on the device since the run began; sim::GuardCounts explains each count.
 struct Guards {
   std::uint64_t speed_limited;
   std::uint64_t coincident_pairs;
@@ -23,7 +22,7 @@ struct Guards {
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
   Momentum braked;      ///< momentum removed by the speed limit, and from particles in quarantine
-  std::uint64_t first;  ///< TroubleKey of the first trouble that Witness noted; 0 = none
+  std::uint64_t first;  ///< largest TroubleKey that Witness noted since the run began; 0 = none
 };
 
 /// A 64-bit number for the time within a frame, the cause and the particle of a trouble. Earlier troubles of
@@ -49,7 +48,8 @@ struct Witness {
   }
 };
 
-/// Support radius of each mass level, m: cbrt(2^level) h_*, with h_* that of level 0 (ViP-Fluid, Eq. 10).
+/// Support radius of each mass level, m: cbrt(2^level) h_*, with the support h_* of level 0 (ViP-Fluid,
+/// Eq. 10).
 struct LevelSupports {
   static constexpr int most = 4;
   float h[most];
@@ -64,7 +64,7 @@ struct ColumnArrays {
 #undef SIM_MEMBER
 };
 
-/// n particles in the order of the neighbour search's cells.
+/// The particles' columns. Each neighbour search sorts the particles by cell.
 class Particles {
  public:
   /// Allocates each column of the set for `capacity` particles (at least n), n of them in use, and frees the
@@ -118,8 +118,9 @@ class Particles {
 
 /// Access to exactly the columns that a pass declares. Each column is a function that returns a pointer to
 /// its values, const unless the pass declares it as written. Undeclared access does not compile. IfThere:
-/// columns that the pass reads if another pass needs them, otherwise nullptr; WritesIfThere: the same for
-/// columns that it writes. A view converts to a view that declares less.
+/// columns that the pass reads only if the schedule allocates them for another pass; otherwise their function
+/// returns nullptr. WritesIfThere: the same for columns that the pass writes. A view converts to a view that
+/// declares less.
 template <ColumnSet Reads, ColumnSet Writes, ColumnSet IfThere = ColumnSet{},
           ColumnSet WritesIfThere = ColumnSet{}>
 class ColumnView {

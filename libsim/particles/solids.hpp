@@ -231,7 +231,6 @@ struct BodyListener {
       patch.given.moment.add_at_once(sum.moment);
     });
   }
-  /// Adds a push to a local sum.
   SIM_FN void add_to(BodySum& sum, int body, Vec3 at, Vec3 push) const {
     sum.push.add(times, push);
     sum.moment.add(times, cross(at - bodies[body].centre, push));

@@ -80,10 +80,10 @@ struct Walls {
     return opens(plane, after < 0 ? from + (before / (before - after)) * (to - from) : to);
   }
 
-  /// Share of a particle's kernel behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient (1/m) with
-  /// the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875 is missing.
-  /// f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for spiky; both
-  /// are exact.
+  /// Share of a particle's kernel behind the walls, 1 - prod (1 - f(s_k / h)) with the distance s_k from wall
+  /// k, and its gradient (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a
+  /// corner where 0.875 is missing. f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 -
+  /// u^5/5), u = 1 - q, for spiky; both are exact.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     float present = 1;
     gradient = {0, 0, 0};

@@ -111,7 +111,7 @@ struct CellWater {
 /// all water.
 struct LevelBeside {
   float mean;  ///< mean over those of the four search directions in which a position outside bodies was found
-  float most;
+  float most;  ///< maximum over these directions
 };
 
 /// Water level beside bodies, measured in the coarse pressure's cells. From a cell inside a body, beside()

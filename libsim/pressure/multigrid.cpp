@@ -10,9 +10,7 @@ namespace {
 /// The coarsest grid has at most this many cells along its longest side.
 constexpr int coarsest_side = 2;
 
-// Code for the small grids, which one thread block processes in its scratch memory. coarsest_sweeps: number
-// of Gauss-Seidel sweeps on the coarsest grid in a V-cycle.
-
+/// Number of Gauss-Seidel sweeps on the coarsest grid in a V-cycle.
 constexpr int coarsest_sweeps = 4;
 /// A grid of at most this many cells is processed by one warp.
 constexpr int one_warp_cells = 64;

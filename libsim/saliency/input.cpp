@@ -103,8 +103,9 @@ void SaliencyInput::OneEye::take(const GBuffer& seen) {
   picture = {depth.data(), normal.data(), 3, seen.width, seen.height, seen.radius_scale};
 }
 
-/// Copies the picture, so that GL may draw the next one while this one is in use. The buffers stay mapped
-/// until give_back(): unmapping here would cost two more switches between GL and the back end.
+/// Copies the picture, so that after give_back() GL may draw the next picture while the solver uses the copy.
+/// The buffers stay mapped until give_back(): unmapping here would cost two more switches between GL and the
+/// back end.
 void SaliencyInput::OneEye::take(const GlPicture& shared) {
   depth.resize(pixels_of(shared));
   normal.resize(4 * pixels_of(shared));

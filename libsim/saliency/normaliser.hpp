@@ -14,7 +14,7 @@ struct SaliencyRange {
   float low, high;
   int known;   ///< 0 before the first usable frame
   int usable;  ///< 0: this frame's finite values, each counted 2^level times, are fewer than two, or its
-               ///< bounds are equal
+               ///< bounds differ by less than rounding errors
 };
 
 /// Finds exact percentiles of non-negative values by three rounds of histograms over their bits: no sort,

@@ -33,7 +33,7 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
   const float attenuation = numbers.attenuation(spot, thickness(eye, spot, r));
   SaliencyParts out;
   out.acuity = numbers.acuity.feature(eye, x, z);
-  // Particles behind the viewer are not visible. A NaN propagates into F and is counted there.
+  // Particles behind the viewer are not visible. A NaN propagates into F; saliency_to_levels() counts it.
   out.manifold = z <= 0 ? 0
                         : manifold_feature(eye, spot, r, numbers.window_max_px) /
                               fmaxf(numbers.acuity.depth_factor(z), 1e-6f);

@@ -20,9 +20,9 @@ void keep_activation(Archive& archive, Activation& a) {
   archive(a.columns_set, a.all_marked, a.grid, a.near, a.range, a.slots, a.slot_of);
 }
 
-/// Writes or reads the particles in their order, the state that methods carry from frame to frame, and the
-/// neighbour lists with which the next frame begins. `state` already has its particle count, columns and
-/// walls. State that each frame computes anew is not saved.
+/// Writes or reads the particles in their order, the state that lasts from frame to frame, and the neighbour
+/// lists if the next frame starts with them. `state` already has its particle count, columns and walls. State
+/// that each frame computes anew is not saved.
 template <class Archive>
 void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,

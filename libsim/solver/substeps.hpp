@@ -6,8 +6,8 @@
 
 namespace sim {
 
-/// Stores a value that each frame measures, and returns the value of two frames ago: its read-back has
-/// finished by then. The lag is the same on every machine, so that runs are reproducible.
+/// Stores a value that each frame measures, and returns the value of two frames ago. The lag is the same on
+/// every machine, so that runs are reproducible.
 template <class T>
 class TwoFramesAgo {
  public:

@@ -89,7 +89,6 @@ struct Adhesion {
   SIM_FN float pull(float h, float q, float skin, Vec3 n, Vec3 away) const {
     return (strength * per_g * sampled(q) + held * tied(q, skin, dot(n, away))) / (h * h);
   }
-  /// Change of a particle's velocity by a body.
   SIM_FN Pulled pulled_by(const Body& body, Vec4 at, const Body::Near& near, float skin, Vec3 n) const {
     const float q = at_least(near.distance / at.w, 0.0f);
     const Rounding round(body, xyz(at), q, at.w);
@@ -155,8 +154,8 @@ struct PullingBodies {
 
 template <class Bodies>
 void launch(FluidState& state, AdhesionColumns p, Bodies bodies) {
-  // int_1/2^1 A and G in closed form: with B(x, y) Euler's beta function, A's moments about 3/4 are
-  // B(1/2, 5/4) / (4 sqrt 2) and B(3/2, 5/4) / (64 sqrt 2); G = int A q^3 / 3.
+  // int_1/2^1 A and G in closed form: with B(x, y) Euler's beta function, A's zeroth and second moments about
+  // 3/4 are B(1/2, 5/4) / (4 sqrt 2) and B(3/2, 5/4) / (64 sqrt 2); G = int A q^3 / 3.
   const double whole = std::beta(0.5, 1.25) / (4 * std::sqrt(2.0));
   const double second = std::beta(1.5, 1.25) / (64 * std::sqrt(2.0));
   const double g = (0.421875 * whole + 3 * 0.75 * second) / 3;

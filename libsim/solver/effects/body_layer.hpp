@@ -10,7 +10,8 @@ struct NoBodies {
   static constexpr bool there = false;
 };
 
-/// True if x is certainly farther from the body than `reach`. Cheaper than computing the distance.
+/// True if x is farther from the body's bounding sphere than `reach`. This test is cheaper than the distance
+/// from the body.
 SIM_FN bool far_from(const Body& body, Vec3 x, float reach) {
   const Vec3 away = x - body.centre;
   const float most = length(body.half) + body.radius + reach;
@@ -28,8 +29,8 @@ SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then th
   }
 }
 
-/// Area of a patch of the body's surface, divided by the area of the patch's offset at `distance`. The ratio
-/// is below 1 at round surfaces, and 1 at flat ones.
+/// Area of a small patch of the body's surface below x, divided by the area of the patch shifted outwards by
+/// `distance` along its normals. The ratio is below 1 at round surfaces, and 1 at flat ones.
 SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
   if (body.radius == 0) return 1;
   const float share = body.radius / (body.radius + at_least(distance, 0.0f));

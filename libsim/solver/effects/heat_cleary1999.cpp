@@ -7,9 +7,10 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// A wall of temperature T acts like water behind it, whose temperature continues linearly from the
-/// particle's temperature theta through T at the wall. d theta / dt = 2 D (T - theta) / s int z F over this
-/// water, with s the distance to the wall and q = s / h. For poly6 the integral is 315 / 256 (1 - q^2)^4 / h.
-/// The step is exact for a constant rate, and so stable for any dt.
+/// particle's temperature theta through T at the wall. d theta / dt = 2 D (T - theta) / s int z F dV over
+/// this water, with the diffusivity D, the particle's distances s to the wall and z to dV's plane parallel to
+/// the wall, and F = -(dW/dr) / r. For poly6 the integral is 315 / 256 (1 - q^2)^4 / h with q = s / h. The
+/// step is exact for a constant rate, and so stable for any dt.
 struct WarmAtWalls {
   const Vec4* position;
   const std::uint8_t* level;

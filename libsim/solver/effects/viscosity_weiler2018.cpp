@@ -17,8 +17,9 @@ namespace {
 ///   m_i dv_i / dt = -rho_0 sum_j V_i V_j w_ij (e u) e,
 /// the form of Weiler et al. 2018, Eq. 7 and 8, symmetric in i and j and central: momentum and angular
 /// momentum are conserved, and rigid rotation is not braked. In the paper w is the slope of a kernel divided
-/// by r. Here w = c nu / h^5 (1 - q^2)^(3/2), whose sum on the cubic lattice, the arrangement of fluid at
-/// rest, is 1.02 to 1.05 of its integral in every direction. nu = 1/2 int w x^2 y^2 / r^2 dV gives c.
+/// by the distance r. Here w = c nu / h^5 (1 - q^2)^(3/2) with q = r / h, whose sum on the cubic lattice, the
+/// arrangement of fluid at rest, is 1.02 to 1.05 of its integral in every direction. nu = 1/2 int w x^2 y^2 /
+/// r^2 dV gives c.
 constexpr float pair_rate = 640 / (pi * pi);
 
 /// w_ij V_j divided by c nu V_i.

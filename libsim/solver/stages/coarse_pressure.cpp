@@ -18,7 +18,7 @@ struct Gather {
   Selection select;
   const Vec4* predicted;
   const float* density;
-  const float* ease;  ///< share of its density constraint that a particle enforces, [0, 1]; nullptr if
+  const float* ease;  ///< share of its density constraint that a particle enforces, (0, 1]; nullptr if
                       ///< nothing splits or merges
   PressureFrame frame;
   CellBlock block;

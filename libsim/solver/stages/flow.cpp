@@ -51,7 +51,7 @@ struct Pour {
     velocity[i] = with_w(lead * lift - Vec3{0, speed, 0}, 0);
     if (heat) warm(i);
   }
-  /// Gives the particle the jet's temperature. The heat of a reused particle is first counted as taken.
+  /// Sets the particle's temperature to the jet's. The heat of a reused particle is first counted as taken.
   SIM_FN void warm(int i) const {
     if (which) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
     temperature[i] = warmth;
@@ -150,7 +150,7 @@ void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, P
   state.lists_hold = state.lists_hold && layers == 0;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
-  // Layers for which there was not enough water are dropped: they count as poured.
+  // Layers that could not be poured are dropped: `before` counts them too, so that no later frame pours them.
   before.length_m += due.count * layer.pitch_m;
   before.layers += due.count;
 }

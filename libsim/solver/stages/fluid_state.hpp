@@ -77,8 +77,6 @@ struct Brake {
   }
 };
 
-// State of the conjugate gradients between passes (libsim/solver/effects).
-
 /// Scalars of a step of the conjugate gradients. They stay on the device, so that the host need not wait for
 /// them.
 struct ConjugateStep {
@@ -93,12 +91,12 @@ struct ConjugateGradient {
   Array<ConjugateStep> step;
 };
 
-/// alpha = r r / p A p, or 0 if p A p is 0.
+/// Step length alpha = r r / p A p, with the matrix A; 0 unless p A p > 0.
 struct TakeAlong {
   ConjugateStep* step;
   SIM_FN void operator()(float bent) const { step->along = bent > 0 ? step->rest / bent : 0; }
 };
-/// beta = new r r / old r r, or 0 if the old r r is 0.
+/// Factor beta = new r r / old r r; 0 unless the old r r > 0.
 struct TakeTurn {
   ConjugateStep* step;
   SIM_FN void operator()(float rest) const {
@@ -106,8 +104,6 @@ struct TakeTurn {
     step->rest = rest;
   }
 };
-
-// State of buoyancy between its passes.
 
 /// Mass and mean temperature, on the device, of the water that takes part in the effect heat.
 struct MeanWarmth {
@@ -120,8 +116,6 @@ struct Buoyancy {
   OrderedSum sum;
   Array<MeanWarmth> mean;
 };
-
-// Timers for the parts of a frame, and for its passes.
 
 /// Parts of a frame, as in ViP-Fluid's Table 2. Each stage belongs to one part.
 enum class Part { Saliency, Levels, Activation, Solve, count };
@@ -250,9 +244,9 @@ struct FluidState {
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
-  /// The gravity g, m/s2, in the speed sqrt(g d_*) that decides which water counts as at rest. Without
-  /// gravity, a value that makes this speed 0.01 d_* per frame; otherwise the smallest motion would count as
-  /// fast.
+  /// The gravity g, m/s2, in the speed sqrt(g d_*) that saliency and the particles' importance use as the
+  /// scale of slow motion. Without gravity, a value that makes this speed 0.01 d_* per frame; otherwise the
+  /// smallest motion would count as fast.
   float gravity_of_rest() const {
     if (parameters.gravity.strength > 0) return parameters.gravity.strength;
     const auto frame = static_cast<float>(parameters.frame_s());

@@ -82,8 +82,8 @@ void run_opening_targets(FluidState& state,
     int fits = coarsest;
     while (fits > 0 && narrow < spacings_wide * 0.499f * state.supports.h[fits]) --fits;
     if (fits == coarsest) continue;
-    // Targets are limited within this distance of the opening. Water from farther away has time to split on
-    // its way to the opening.
+    // Targets are limited within this distance of the opening, so that water has time to split on its way to
+    // the opening.
     const float margin = narrow + reach;
     Vec3 low = o.low - Vec3{margin, margin, margin};
     Vec3 high = o.high + Vec3{margin, margin, margin};
@@ -162,7 +162,8 @@ struct Grade {
   }
 };
 
-/// A difference of three levels needs three sweeps.
+/// Number of sweeps. With levels 0 to 3 at least two are needed: limits of 1, then limits of 2, spread from a
+/// target of 0.
 constexpr int sweeps = 3;
 
 using GradedTargetsColumns =

@@ -44,7 +44,7 @@ struct Loosen {
     const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
     return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
   }
-  static constexpr float fine = 1048576;  ///< 1/m: positions closer than 1 / fine have the same hash
+  static constexpr float fine = 1048576;  ///< 1/m: the hash truncates positions to multiples of 1 / fine
   /// Minimum density inside the fluid, as a share of rho_0. Particles of lower density are at the surface and
   /// do not move.
   static constexpr float inside = 0.95f;

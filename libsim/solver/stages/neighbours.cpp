@@ -25,7 +25,6 @@ void list_active(FluidState& state, SubstepView p) {
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
-  // The next frame's level update compares all particles, and so needs the lists of all.
   const bool hold = !state.one_level && state.substep + 1 == state.parameters.substeps;
   if (hold || state.parameters.effects[EffectKind::Heat] > 0) {
     state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);

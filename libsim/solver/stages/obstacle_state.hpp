@@ -13,21 +13,21 @@ struct ObstacleState {
   double frame_begin_s = 0;  ///< time at the frame's beginning, since frame 0
   Array<Body> bodies;        ///< positions at the end of this substep
   /// Pushes in this frame: first the pushes of the density constraint, one per body, then the pushes of
-  /// effects. Empty unless the obstacles' pushes are recorded.
+  /// effects. The array is empty if the obstacles' pushes are not recorded.
   Array<BodySum> sums;
-  /// First the patches of the gauges on obstacles, then one patch for each whole body. Empty without such
-  /// gauges.
+  /// First the patches of the gauges on obstacles, then one patch for each whole body. The array is empty if
+  /// no gauge is on an obstacle.
   Array<BodyPatch> patches;
   Array<PatchSum> patch_sums;  ///< sums of this frame, one per patch
-  /// Volume of each body below the water level, in volumes of m_*, in the fixed point of CellWater.
+  /// Volume of each body below the water level, in volumes of m_* times CellWater::fixed_point.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
   Array<BodyRow> rows;   ///< one per body; empty until the effect viscosity needs them
-  // Empty if no obstacle is a mesh:
+  // These three arrays are empty if no obstacle is a mesh.
   Array<MeshGrid> meshes;     ///< one per body
   Array<float> distances;     ///< distance values of all grids
   Array<Vec3> mesh_contacts;  ///< contact points of all meshes
-  // Empty if no free obstacle can touch another obstacle and none has friction:
+  // Used only if meet(): a free obstacle is present, and there is a second obstacle or one has friction.
   Array<Vec3> by_others;              ///< momentum that each body received from others in this frame, m_* m/s
   Array<float> friction;              ///< friction coefficient of each body
   bool rough = false;                 ///< true if a friction coefficient is not 0

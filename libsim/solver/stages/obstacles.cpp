@@ -7,7 +7,8 @@ namespace {
 
 static_assert(most_bodies == static_cast<int>(most_obstacles));
 
-/// Passes all bodies as a kernel argument: this needs no separate copy to the device.
+/// Sets the bodies that are not free. They are passed as a kernel argument, which needs no separate copy to
+/// the device.
 struct PlaceBodies {
   Body from[most_bodies];
   int which[most_bodies];

@@ -111,8 +111,8 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
   }
 }
 
-/// Separates all particles of weightless water until almost no overlap is left. If only the particles near
-/// those that split or merged moved, they would compress the others, and the substep would turn this
+/// Separates all particles of weightless water by `weightless_partings` projections. If only the particles
+/// near those that split or merged moved, they would compress the others, and the substep would turn this
 /// compression into speed. Under gravity such water falls back; weightless water would fly apart.
 void part_all(FluidState& state, PartingColumns p) {
   for (state.iteration = 0; state.iteration < state.levels.rules.weightless_partings; ++state.iteration) {

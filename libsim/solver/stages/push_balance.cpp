@@ -9,7 +9,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Number of particles that a team sums before it adds to the total, to reduce contention for the total.
+/// Number of particles that a team sums before it adds to the total, so that fewer teams contend for the
+/// total.
 constexpr int run_length = 64;
 
 struct SumPush {
@@ -229,8 +230,8 @@ void balance_push(FluidState& state, ClampView p) {
   auto& coarse = state.coarse;
   coarse.balance.resize(1);
   coarse.balance.zero();
-  // Without `pressed`, unsolved particles do not move with the coarse pressure: the sums stay 0, and nothing
-  // is corrected.
+  // Without `pressed`, unsolved particles do not move with the coarse pressure. PushBalance::mass then stays
+  // 0, so that no particle is corrected.
   const bool pressed = state.all_active || state.activation.rules.pressed;
   if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,

@@ -35,8 +35,8 @@ void find_surroundings(FluidState& state, SurroundingsView p, bool densities) {
 }
 
 /// Reuses the last substep's lists and densities if FluidState::lists_hold; otherwise computes both anew. If
-/// the last frame did not solve all particles, it computes all densities with the old lists, because unsolved
-/// particles have none.
+/// the last frame did not solve all particles, it computes all densities with the old lists, because the
+/// densities of unsolved particles were not measured.
 void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   if (!state.lists_hold) {
     find_surroundings(state, p, densities);

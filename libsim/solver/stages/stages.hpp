@@ -120,7 +120,8 @@ Stage frame_neighbours_stage();
 Stage forced_targets_stage();
 /// Limits targets near narrow outlets to levels that fit through them.
 Stage opening_targets_stage();
-/// Limits targets of neighbours to differ by at most one level.
+/// Applies the dead band (LevelRules::dead_band) to the targets; then, if LevelRules::graded, limits the
+/// difference between targets of neighbours to one level.
 Stage graded_targets_stage();
 /// Splits and merges particles (ViP-Fluid, Algorithms 1 and 2). This changes the number of particles and
 /// invalidates the neighbour list.
@@ -157,8 +158,9 @@ Stage parting_stage();
 Stage density_stage();
 /// Moves particles by their multipliers, and back inside the walls. The pair terms conserve momentum exactly.
 Stage displacement_stage();
-/// These three stages record the momentum that walls and obstacles give the water: by holding particles back,
-/// by their share in the density constraint, and by the coarse pressure on cells.
+/// held_at_walls_stage, missing_density_stage and wall_cells_stage record the momentum that walls and
+/// obstacles give the water: by holding particles back, by their share in the density constraint, and by the
+/// coarse pressure on cells, in this order.
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();

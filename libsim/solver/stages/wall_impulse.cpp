@@ -191,7 +191,7 @@ struct WallCells {
       }
     });
   }
-  /// Change of q over the cell, limited so that q does not fall below 0 within it.
+  /// Change of q along one axis over the cell, limited so that along this axis q does not fall below 0.
   SIM_FN float slope_of(float q, int x, int y, int z, int dx, int dy, int dz) const {
     const float before = q_beside(q, x - dx, y - dy, z - dz);
     const float after = q_beside(q, x + dx, y + dy, z + dz);

@@ -23,8 +23,8 @@ struct RestingWater {
   float strength;
   Calm calm;
   /// Share of the filter that moving water gets. With 1, dam breaks lose 4 % of their energy; with 0, splits
-  /// and merges move a deep pool faster than the limit of rest. Without gravity no water counts as at rest,
-  /// and the share is 1.
+  /// and merges move a deep pool faster than the limit of rest. If no water counts as at rest, without
+  /// gravity or with Readings::calm_speed 0, the share is 1.
   float in_motion;
   float viscosity;  ///< additional viscosity of water at rest, as a multiple of the fluid's viscosity
 
