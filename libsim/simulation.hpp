@@ -69,7 +69,7 @@ struct SimulationOptions : SolverNumbers {
   int levels = most_levels;
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
-  /// method; if particles split and merge, ids are unique and below the capacity (particle_capacity).
+  /// method; if particles split and merge, ids must be unique and below the capacity (particle_capacity).
   std::optional<std::vector<ParticleState>> start;
   /// Number of frames that the run had before `start`; nozzles continue from this frame. >= 0.
   int start_frame = 0;
@@ -92,8 +92,7 @@ struct SimulationOptions : SolverNumbers {
   std::function<void(int, int)> settling;
 };
 
-/// Counts of guard interventions since the simulation was made: each count says how often one rule stepped
-/// in.
+/// Counts since the simulation was made: how often each of the solver's safety rules (guards) intervened.
 struct GuardCounts {
   /// times that the speed of a particle or a free body was limited; a particle counts up to twice per
   /// substep, and up to three times with the effect viscosity
@@ -141,7 +140,7 @@ struct TemporalReport {
   std::int64_t active = 0;        ///< number of solved particles
 };
 
-/// Particle counts of a frame and how the solver solved it. Costs almost no time.
+/// Particle counts, temporal acceleration and guard counts of a frame. Recording them costs almost no time.
 struct FrameAccount {
   std::vector<std::int64_t> particles_by_level;  ///< one count per radius of Simulation::radii_m
   std::optional<TemporalReport> temporal;        ///< none = no temporal acceleration, or no frame yet
@@ -293,7 +292,7 @@ class Simulation {
   /// Sets position and velocity of existing particles, by id, so that tests can disturb the water. Levels do
   /// not change. base::Error for an unknown id.
   virtual void put(const std::vector<ParticleState>&) {}
-  /// Measures the present state (costs a pass and a read-back; not part of step_frame).
+  /// Measures the present state on a copy of the particles. This is slow, and not part of step_frame.
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
   /// Maximum number of particles in the whole run; a buffer for this many never needs to grow.

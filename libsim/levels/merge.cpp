@@ -75,8 +75,8 @@ struct KeepSteps {
   }
 };
 
-/// Order in which pairs merge: the pair with the smaller distance first; equal distances in random order.
-/// Both particles of a pair compute the same key.
+/// Priority of a pair for merging: pairs at smaller distances come first, pairs at equal distances in random
+/// order. Both particles of a pair compute the same key.
 struct PairKey {
   float distance2;
   std::uint32_t chance;
@@ -180,8 +180,8 @@ struct Propose {
   }
 };
 
-/// Refuses a mutual proposal if its merged particle would overlap that of a mutual proposal that comes before
-/// it in the order of PairKey.
+/// Refuses a mutual proposal if its merged particle would overlap the merged particle of another mutual
+/// proposal that comes first in the order of PairKey.
 struct KeepApart {
   const Vec4* position;
   const std::uint8_t* level;
@@ -202,8 +202,8 @@ struct KeepApart {
     }
     if (team.rank() == 0) out[i] = kept;
   }
-  /// True if the merged particle of i and j would overlap that of a pair that comes before it in the order of
-  /// PairKey. Checks this lane's share of the neighbours of `member`, which is i or j.
+  /// True if the merged particle of i and j would overlap the merged particle of another pair that comes
+  /// first in the order of PairKey. Checks this lane's share of the neighbours of `member`, which is i or j.
   template <class Team>
   SIM_FN bool early_beside(int i, int j, int member, Team team) const {
     const PairKey own = pair_key(position[i], position[j], id[i], id[j]);

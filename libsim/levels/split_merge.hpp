@@ -103,8 +103,8 @@ bool choose_splits(LevelState& levels, const LevelFluid& fluid);
 void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Merges particles that waited without a partner, through a coarser particle between two of them.
 void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
-/// Creates the children of splits and removes merged particles from the arrays. The number of particles
-/// changes. `particles`: the particles of `fluid`.
+/// Creates the children of splits and removes merged particles from the arrays. The number of particles may
+/// change. `particles`: the particles of `fluid`.
 void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 
 /// Increases the age of all particles, in a frame that does not update the levels.

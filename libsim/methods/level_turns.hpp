@@ -15,7 +15,8 @@ struct LevelTurns {
   int frames_since = 0;  ///< frames since the last turn; 0: there was none
   int in_a_row = 0;      ///< number of following frames that are turns although the period has not passed
 
-  /// True if the coming frame is a turn. turned_deg: angle by which a gaze has turned since the last turn.
+  /// True if the coming frame is a turn. turned_deg: angle, in degrees, by which a gaze has
+  /// moved since the last turn.
   bool would_be(const Readings& r, double turned_deg) const {
     return frames_since == 0 || in_a_row > 0 || frames_since >= r.levels_period_frames ||
            turned_deg > r.saccade_deg;

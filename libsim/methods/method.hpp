@@ -16,8 +16,8 @@ inline constexpr int most_levels = 4;
 /// Source of the level that a particle should have.
 enum class TargetSource {
   None,     ///< no targets: particles keep their levels
-  Gaze,     ///< finest in the fovea, coarsest in the periphery, other levels between (like FovFluid, [42] in
-            ///< ViP-Fluid)
+  Gaze,     ///< the gaze: the finest level in the fovea, the coarsest in the periphery, the other levels
+            ///< between (like FovFluid, [42] in ViP-Fluid)
   Saliency  ///< visual saliency, Eq. 1-9
 };
 

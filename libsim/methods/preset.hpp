@@ -32,8 +32,7 @@ enum class ThicknessWeight { Min, Max };
 enum class Normalisation { Percentile, MinMax };
 
 /// All switches. Comments name the paper's equation if the switch belongs to one. d_* is the diameter of the
-/// finest particles.
-/// Without gravity, 0.01 d_* per frame replaces the speed sqrt(g d_*) in Eq. 6, 13 and 14.
+/// finest particles. Without gravity, 0.01 d_* per frame replaces the speed sqrt(g d_*) in Eq. 6, 13 and 14.
 struct Readings {
   // Eq. 1-9: saliency
   double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature
@@ -102,13 +101,14 @@ struct Readings {
   /// merged particle. The level of a neighbour that has long waited to merge does not count
   /// (LevelRules::lags).
   bool merge_keeps_steps = true;
-  /// A particle becomes coarser only if N (1 - s) of Eq. 9 exceeds the next coarser level by this much, in
-  /// levels. So a particle whose s varies about the border of two levels does not split and merge in turn.
-  /// [0, 1)
+  /// A particle becomes coarser only if N (1 - s) of Eq. 9 exceeds the next coarser level by at least this
+  /// number. So a particle whose s varies about the border of two levels does not alternately split and
+  /// merge. [0, 1)
   double merge_dead_band = 0.7;
-  /// Filter near particles that just split or merged, strongest in water at rest: in a substep it removes up
-  /// to this share of the differences between neighbours' velocity changes. Otherwise the overlap of the new
-  /// particles would become kinetic energy. [0, 1]; 0 = no filter.
+  /// Strength of a filter of velocity changes near particles that just split or merged. In a substep the
+  /// filter removes up to this share of the differences between neighbours' velocity changes, and most in
+  /// water at rest. Otherwise the overlap of the new particles would become kinetic energy. [0, 1]; 0 = no
+  /// filter.
   double kick_filter = 0.9;
   /// Additional viscosity of water at rest, as a multiple of the fluid's viscosity: damps the irregularities
   /// left by splits and merges. >= 0
@@ -139,8 +139,8 @@ struct Readings {
   /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell. Without effect if
   /// inherit_change is false.
   double inactive_damping = 0.25;
-  /// Inactive particles count in lambda's denominator as if they could move; false: as if their mass were
-  /// infinite.
+  /// In the denominator of lambda, the multiplier of the density constraint, inactive particles count as if
+  /// they could move; false: as if their mass were infinite.
   bool inactive_yield = true;
   /// Spray, fast particles, particles near walls and obstacles, particles that just split or merged and, with
   /// the effect cohesion, particles at the surface are solved in every frame.

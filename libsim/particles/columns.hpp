@@ -61,9 +61,7 @@ enum class Descent {
 //                   dimensionless, or another vector
 //   Ease            share (0, 1] of the density constraint that a particle enforces; below 1 near particles
 //                   that a split or a merge has just made
-//   Age             frames since a split, a merge or a nozzle made the particle, at most 255; 255 for
-//   particles
-//                   of the start
+//   Age             frames since a split, a merge or a nozzle made the particle, at most 255; starts at 255
 //   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
 //   Rest            counter of the frames in which the particle was not solved and of the solved frames after

@@ -91,10 +91,11 @@ struct Classify {
   }
 };
 
-/// Sets kind and source of each cell in scenes with obstacles. Cells in an obstacle count as water at rest up
-/// to the water level beside the obstacle, and as air above it. The pressure beside the obstacle then carries
-/// the weight of the displaced water. The cells are too wide for more detail. The particles' density
-/// constraint keeps water out of the obstacle.
+/// Sets kind and source of each cell in scenes with obstacles. A cell without particles, in or next to an
+/// obstacle, counts as water at rest if the mean water level beside the obstacle is above the cell's middle,
+/// as solid if the water on some side is above the whole cell, and otherwise as air. The pressure of the
+/// cells beside the obstacle then supports the weight of the displaced water. The cells are too wide for more
+/// detail. The particles' density constraint keeps water out of the obstacle.
 struct ClassifyRound {
   PressureFrame frame;
   GridView grid;
@@ -119,8 +120,7 @@ struct ClassifyRound {
     if (waterline.solids.nearest_body(at) > 0.5f * waterline.pitch()) return;
     const LevelBeside level = waterline.beside(x, y, z);
     if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
-    // An obstacle between water and dry space is solid. If its cells were air, the water would flow into
-    // them.
+    // If the cells of an obstacle between water and dry space were air, the water would flow into them.
     else if (level.most == 1)
       grid.kind[i] = CellKind::Solid;
   }

@@ -176,7 +176,8 @@ class PassClock {
   std::vector<double> seconds_;
 };
 
-/// The fluid between two passes. Particle arrays are in the grid's order of the last substep.
+/// The fluid between two passes. The last neighbour search sorted the particle arrays by cell; later splits,
+/// merges, nozzles and outlets may have changed them.
 struct FluidState {
   SolverParameters parameters;
   Walls walls{};

@@ -5,14 +5,15 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Filters of velocities in addition to the viscosity. Water of one level uses NoFilter; docs/decisions.md,
-/// "Still water of one size", describes how it comes to rest. Water with levels uses RestingWater. New
-/// particles of a split or a merge overlap their neighbours. The projections separate them, and the velocity
-/// of this separation is not a motion of the fluid. So velocity changes near new particles are averaged over
-/// neighbours. The average conserves momentum, and does not alter changes that all particles share, such as
-/// those by gravity and pressure. Splits and merges also lift the water a little. It sinks back for a second
-/// or two, which sets it in motion, and an additional viscosity of water at rest damps this motion. Water
-/// that moved before is filtered less and gets no additional viscosity, because it would lose energy.
+/// Filters of velocities in addition to the viscosity. Runs without splits and merges use NoFilter;
+/// docs/decisions.md, "Still water of one size", describes how their water comes to rest. Runs with splits
+/// and merges use RestingWater. New particles of a split or a merge overlap their neighbours. The projections
+/// separate them, and the velocity of this separation is not a motion of the fluid. So velocity changes near
+/// new particles are averaged over neighbours. The average conserves momentum, and does not alter changes
+/// that all particles share, such as those by gravity and pressure. Splits and merges also lift the water a
+/// little. It sinks back for a second or two, which sets it in motion, and an additional viscosity of water
+/// at rest damps this motion. Water that moved before is filtered less and gets no additional viscosity,
+/// because it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
