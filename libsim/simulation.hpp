@@ -248,9 +248,10 @@ class Simulation {
   /// gaze along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this back
   /// end cannot read (EyeLook::shared, on a CPU or with a context of another device): then read the picture
   /// back and call again. Until the next copy_to_gl, the simulation owns the shared buffers of this call and
-  /// of copy_to_gl: GL must not read or draw them. If the next frame does not update levels, only the gaze is
-  /// used, and the call returns true. base::Error: no eye or more than two, a camera that is not finite, a
-  /// visual scale that is not positive, a picture with incomplete arrays or without a perspective camera.
+  /// of copy_to_gl: GL must not read or draw them. If the next frame does not update levels, only gazes and
+  /// cameras are used, and the call returns true. base::Error: no eye or more than two, a camera that is not
+  /// finite, a visual scale that is not positive, a picture with incomplete arrays or without a perspective
+  /// camera.
   virtual bool look(const Looks& looks) = 0;
   /// True if this run computes saliency from the picture passed to look(); if false, the caller need not read
   /// the picture back from the renderer.
@@ -362,7 +363,8 @@ class Simulation {
 /// effect needs more than the program allows.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
 
-/// Fills the scene with water, lets it settle, and returns the simulation at frame 0. Errors are base::Error.
+/// Fills the scene with water, lets it settle, and returns the simulation at frame 0; or starts from
+/// SimulationOptions::start or resume_from. Errors are base::Error.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 
 }  // namespace sim

@@ -27,8 +27,8 @@ struct ActivationRules {
         speed_floor(static_cast<float>(readings.speed_floor)) {}
 
   bool relative_level_change;
-  /// Normalise the importance F_pim between its 1st and 99th percentile, which follow each frame's
-  /// percentiles by a tenth of the difference; false: between the frame's minimum and maximum.
+  /// The importance F_pim is normalised between two bounds that follow its 1st and 99th percentile, in each
+  /// frame by a tenth of the difference; false: between the frame's minimum and maximum.
   bool robust_range;
   bool inherit_change;
   bool pressed;  ///< gravity and coarse pressure move unsolved particles too; only with inherit_change

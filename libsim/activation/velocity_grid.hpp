@@ -1,7 +1,7 @@
 #pragma once
 /// Grids of cells with the mean velocity V of each level and the kinetic energy E of all levels. They last
 /// from frame to frame. The cells of ViP-Fluid section 4.3 have an edge of 10 d_*, with d_* the spacing of
-/// the finest particles: 1000 of these fill a cell.
+/// the finest particles: 1000 of these particles fill a cell.
 
 #include <cstdint>
 

@@ -122,10 +122,11 @@ struct LevelState {
   Array<std::uint8_t> status, status_next;  ///< state of each particle while splits are chosen (split.cpp)
   Array<std::uint8_t> split_code;           ///< packed SplitCode; 0 = no split
   Array<std::uint8_t> wish;                 ///< 1 = wants to merge
-  Array<std::uint8_t> gone;                 ///< 1 = merged into another
+  Array<std::uint8_t> gone;                 ///< 1 = merged into another particle
   Array<std::uint8_t> graded;               ///< targets that a sweep of the grading writes
   Array<int> partner;                       ///< proposed merge partner
-  /// number of particles that replace each particle: 1 if it does not change, 0 if it merged into another
+  /// number of particles that replace each particle: 2^k if it splits, 0 if it merged into another particle,
+  /// else 1
   Array<int> births;
   Array<int> places;  ///< first the mutual merge partners, later the inclusive sums of births
   /// order: first the splits by priority, later the source in the old arrays of each particle of the new

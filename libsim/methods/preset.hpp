@@ -69,7 +69,7 @@ struct Readings {
   double calm_floor = 0.3;
   /// Eq. 9: lower limit of the F that maps to s = 1; if all F are smaller, no particle has s = 1
   double saliency_floor = 0.1;
-  /// Duration for which a lost gaze stays at its last position, before it follows the view's axis; a blink
+  /// Duration for which a lost gaze keeps its last direction, before it follows the view's axis; a blink
   /// lasts 0.1 to 0.4 s.
   double gaze_hold_s = 0.5;
 

@@ -20,7 +20,8 @@ struct AllParticles {
 };
 
 /// The first slots contain the indices of the active particles, in the grid's order. The remaining slots
-/// contain ~index of the others, a negative number. So almost every warp is either active or idle.
+/// contain ~i, a negative number, for each inactive particle i. So almost every warp has either only active
+/// or only inactive particles.
 struct ActiveParticles {
   static constexpr bool everyone = false;
   const int* slots;

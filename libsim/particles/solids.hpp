@@ -44,8 +44,8 @@ struct SphereShare {
   }
 
  private:
-  /// Antiderivatives, in the order of the functions: of z^2 (1 - z^2)^3, z (1 - z^2)^3, z^3 (1 - z^2)^3, z (1
-  /// - z)^3 and z^3 (1 - z)^3.
+  /// Antiderivatives of z^2 (1 - z^2)^3, z (1 - z^2)^3, z^3 (1 - z^2)^3, z (1 - z)^3 and z^3 (1 - z)^3, in
+  /// the order of the functions.
   SIM_FN static float plain(float z) {
     const float z2 = z * z;
     return z * z2 * (1.0f / 3 + z2 * (-0.6f + z2 * (3.0f / 7 - z2 / 9)));

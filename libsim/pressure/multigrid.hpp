@@ -12,7 +12,8 @@ namespace sim::SIM_BACKEND {
 enum class CellKind : std::uint8_t { Air, Fluid, Solid };
 
 /// One grid in the form that kernels use. The equation of a fluid cell i: the sum of conductance x (q_i -
-/// q_j), over those of its six neighbours j that are not solid, equals source_i.
+/// q_j), over those of its six neighbours j that are not solid, plus openness x conductance x q_i for each
+/// open face, equals source_i.
 struct GridView {
   CellBlock block, finest;
   Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubic cells
@@ -72,7 +73,8 @@ struct GridView {
 class Multigrid {
  public:
   /// Allocates a finest grid of this many cells and its coarser grids; keeps them if the numbers of cells are
-  /// unchanged. The conductance of a face is its area divided by the distance between the two cells' centres.
+  /// unchanged. conductance: of a finest cell's faces across x, y and z, in proportion to a face's area
+  /// divided by the distance between the two cells' centres. top: kind of the cells above the grid.
   void fit(CellBlock finest, Vec3 conductance = {1, 1, 1}, CellKind top = CellKind::Air);
   /// Opens these faces of the finest grid, and closes all others.
   void open(const std::vector<OpenFace>& faces) { open_.from_host(faces); }

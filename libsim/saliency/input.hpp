@@ -36,7 +36,7 @@ class SaliencyInput {
   void mark_gazes(double hold_s);
   /// Unmaps the GL buffers of the pictures that look() mapped. Required before GL draws.
   void give_back();
-  /// Sets one eye with this camera, without gaze and picture, for programs that never call look().
+  /// Sets one eye with this camera, without a gaze or a picture. It applies until the first look().
   void look_by_default(const View& view);
 
   /// The eyes for the coming frame of dt_s. A lost gaze keeps its last direction for hold_s and then follows
@@ -48,7 +48,7 @@ class SaliencyInput {
   SeenReport seen() const { return seen_; }
   /// Bytes used by the pictures.
   std::size_t bytes() const;
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(count_, gaze_lost_, seen_);

@@ -1,6 +1,6 @@
 #pragma once
-/// The eyes' positions, gazes and pictures that a program gives a simulation before a frame. Plain host data,
-/// no back end, no GL calls.
+/// The eyes' positions, gazes and pictures that a program gives a simulation before a frame. The types
+/// contain host data and need neither a back end nor GL calls.
 
 #include <vector>
 

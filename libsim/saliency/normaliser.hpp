@@ -41,7 +41,7 @@ class SaliencyNormaliser {
     int valid;
   };
 
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(range_);

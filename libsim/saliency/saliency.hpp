@@ -39,7 +39,7 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
                               fmaxf(numbers.acuity.depth_factor(z), 1e-6f);
   if (numbers.manifold_occlusion) out.manifold /= attenuation;
   const bool unseen = numbers.calm_out_of_view && spot.kind == Spot::Kind::OutOfView;
-  out.temporal = unseen ? 0 * temporal : temporal / attenuation;  // keeps NaN
+  out.temporal = unseen ? 0 * temporal : temporal / attenuation;  // NaN if temporal is NaN
   out.combined = (1 - numbers.alpha) * (out.acuity + out.manifold) + numbers.alpha * out.temporal;
   return out;
 }

@@ -60,8 +60,8 @@ struct Acuity {
 
   SIM_FN static constexpr float radians(float degrees) { return degrees * 0.017453292519943f; }
 
-  /// Angle between the gaze and the direction to x, as seen in the picture, rad. An arc cosine would lose all
-  /// precision below 0.03 degrees.
+  /// Angle between the gaze and the direction in which the eye sees x (visual()), rad. Computed by atan2f,
+  /// because an arc cosine would lose all precision below 0.03 degrees.
   SIM_FN static float eccentricity(const Eye& eye, Vec3 x) {
     const Vec3 u = eye.visual(x - eye.viewpoint);
     const Vec3 g = eye.gaze;

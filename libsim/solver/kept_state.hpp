@@ -40,7 +40,8 @@ void keep_fluid(Archive& archive, FluidState& state) {
   if (state.obstacles.exists()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
   if (state.obstacles.meet()) archive(state.obstacles.by_others);
-  // Only methods with levels use neighbour lists before particles move, so other methods do not save them.
+  // Only stages that set or use target levels read neighbour lists before the particles move, so runs without
+  // the column Target do not save the lists.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);
   if constexpr (Archive::reads) state.lists_hold = with_lists;

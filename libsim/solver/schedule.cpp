@@ -89,7 +89,8 @@ std::optional<Sharing> next_to_share(const std::vector<Stage>& passes, const std
   return {};
 }
 
-/// Replaces each two passes that can share a loop over neighbours by one pass, at the place of the earlier.
+/// Replaces two passes that can share a loop over neighbours by one pass in the place of the earlier pass,
+/// until no two passes can share a loop.
 void share_loops(std::vector<Stage>& passes, const std::vector<SharedLoop>& loops, std::string& explanation) {
   while (auto sharing = next_to_share(passes, loops)) {
     explanation += "  one loop     " + padded(sharing->stage.name, 20) + "instead of " +

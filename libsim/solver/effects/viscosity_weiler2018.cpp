@@ -40,7 +40,7 @@ struct Images {
   /// True if an image behind wall k may be a neighbour of a particle at `at`. The mean support of a pair is
   /// at most 1.5 times the particle's support, because the coarsest neighbours have twice that support.
   SIM_FN bool near(int k, Vec4 at) const { return walls.distance(k, xyz(at)) < 1.5f * at.w; }
-  /// True if wall k acts on both particles: neither is in front of an opening.
+  /// True if wall k acts on both particles: none is in front of an opening of the wall or has passed it.
   SIM_FN bool between(int k, Vec4 a, Vec4 b) const {
     return !walls.absent(k, xyz(a)) && !walls.absent(k, xyz(b));
   }

@@ -42,8 +42,8 @@ std::vector<Stage> all_stages() {
   std::vector<Stage> out{frame_neighbours_stage(), gaze_targets_stage(), saliency_stage(),
                          saliency_parts_stage(), forced_targets_stage(), opening_targets_stage(),
                          graded_targets_stage(), split_and_merge_stage(),
-                         // The nozzle stage comes after all stages that use the last substep's neighbours,
-                         // because pouring invalidates them.
+                         // The nozzle stage comes after all stages that use the last substep's neighbour
+                         // lists, because pouring invalidates the lists.
                          nozzle_stage(), activation_stage(), obstacles_stage(), bodies_move_stage(),
                          bodies_meet_stage(), forces_stage(), present_neighbours_stage()};
   const auto add = [&](bool before_moves) {
@@ -56,7 +56,7 @@ std::vector<Stage> all_stages() {
                          wall_cells_stage(), density_stage(), missing_density_stage(), displacement_stage(),
                          velocity_stage(), xsph_stage(), xsph_of_levels_stage()});
   add(false);
-  // The last stages come after all stages that push bodies.
+  // bodies_pushed_stage comes after all stages that push bodies.
   out.insert(out.end(), {bodies_pushed_stage(), velocity_grid_stage(), settling_stage(), outflow_stage()});
   return out;
 }

@@ -60,7 +60,8 @@ struct SumWalls {
 };
 
 /// Sums the push of obstacles: -rho_0 grad q over the volume of water that they displace, up to the water
-/// level beside them, and rho_0 q A at their solid cells.
+/// level beside them, and rho_0 q A at their solid cells, with the coarse pressure q and the area A of a
+/// cell's face.
 struct SumBodies {
   static constexpr int samples = 4;  ///< samples along a cell's edge
   CoarseSlope slope;

@@ -15,12 +15,12 @@ struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  Vec4* kick;  ///< velocity change, for the filter of water with levels (RestingWater); else nullptr
+  Vec4* kick;  ///< output: velocity change, for RestingWater; nullptr if nothing splits or merges
   Brake brake;
   float dt;
   Calm still;            ///< criterion of rest for the finest particles
   float finest_support;  ///< support of particles of level 0, m
-  /// particles that were at rest before this substep's velocity change count as at rest too
+  /// true: particles that were at rest before this substep's velocity change count as at rest too
   bool before_kicks;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);

@@ -80,8 +80,8 @@ struct Inherit {
   }
 };
 
-/// Marks solved particles of low density: spray and, with surface tension, the surface. Their velocity must
-/// not come from a grid.
+/// Marks solved particles of low density: spray and, with surface tension, the surface. If
+/// ActivationRules::keep_fragile_active, they are solved in the next frame too.
 struct MarkSparse {
   const std::uint8_t* active;
   const float* density;
