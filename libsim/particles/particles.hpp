@@ -21,7 +21,7 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
-  Momentum braked;      ///< momentum removed by the speed limit, and from particles in quarantine
+  Momentum braked;  ///< momentum removed by the speed limit, and from the particles that not_finite counts
   std::uint64_t first;  ///< largest TroubleKey that Witness noted since the run began; 0 = none
 };
 

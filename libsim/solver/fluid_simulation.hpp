@@ -24,7 +24,7 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options);
 int least_substeps(const Scene& scene, const SimulationOptions& options);
 /// Text that lists the effects `listed`, then the longest substep that the effects of `scene` allow, and the
 /// scene's characteristic scales and Reynolds, Weber and Bond numbers; with viscosity and gravity also the
-/// shear rate below which the particles' lattice resists more than the viscosity by a quarter. `scene` must
+/// shear rate below which the particles' lattice adds more than a quarter to the viscous stress. `scene` must
 /// contain only effects that act on its water (acting_scene). Empty text without effects and obstacles.
 std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
                              const SimulationOptions& options);

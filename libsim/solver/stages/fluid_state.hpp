@@ -189,7 +189,7 @@ struct FluidState {
   /// have taken but not yet poured, which is negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
-  Vec3 refuge{};           ///< position for particles whose own position is lost
+  Vec3 refuge{};           ///< new position of particles that are not finite or far outside the tank
   bool one_level = true;   ///< all particles have one level throughout the run
   bool compressed = true;  ///< the water is or may be compressed: frames begin with a pre-stabilisation
   int substep = 0;

@@ -1,4 +1,4 @@
-/// Random steps that keep thick fluid of one size flowing.
+/// Random steps that prevent a very viscous fluid of equally large particles from locking in a lattice.
 
 #include <cmath>
 

@@ -134,13 +134,13 @@ Stage bodies_move_stage();
 Stage bodies_meet_stage();
 /// Updates the forces on free obstacles from the water's push in the substep.
 Stage bodies_pushed_stage();
-/// Applies quarantine of lost particles, forces and the speed limit without moving particles; the effect
-/// viscosity acts next.
+/// Resets particles whose position or velocity is lost (not finite, or far outside the tank), and changes the
+/// velocities of all particles by the forces and the speed limit; the effect viscosity acts next.
 Stage forces_stage();
 /// Lists neighbours at the positions before the substep's move, for the effect viscosity.
 Stage present_neighbours_stage();
-/// Applies quarantine of lost particles, forces (unless forces_stage did so in this substep) and the speed
-/// limit. Then moves the particles by one explicit step to their predicted positions.
+/// Resets lost particles, and applies the forces (unless forces_stage did so in this substep) and the speed
+/// limit, like forces_stage. Then moves the particles by one explicit step to their predicted positions.
 Stage predict_stage();
 /// Builds the grid and the neighbour lists at the predicted positions.
 Stage neighbours_stage();
