@@ -118,7 +118,7 @@ struct GuardCounts {
 /// FrameReport::particles_in - particles_out.
 struct LevelEvents {
   std::uint64_t splits = 0;
-  std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 per split
+  std::uint64_t born = 0;            ///< particles added by splits: a split into 2^k children adds 2^k - 1
   std::uint64_t merges = 0;          ///< merges; each removes one particle
   std::uint64_t split_deferred = 0;  ///< particle-turns in which Readings::split_share delayed a split
   /// particle-turns in which no children fitted between the walls and obstacles
@@ -313,7 +313,8 @@ class Simulation {
   /// frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
   /// later read_particles. base::Error if a picture lies in GL buffers that this back end cannot read.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
-  /// s and target by the gaze-only rule, in the order of read_particles; the other fields are 0.
+  /// ParticleSaliency::s and target by the rule of methods whose levels follow the gaze alone, in the order
+  /// of read_particles; the other fields are 0.
   virtual void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// Ids in the order of read_particles.
   virtual std::vector<int> read_ids() const = 0;

@@ -1,8 +1,9 @@
-// Sums on the floor the sunlight that the water's surface refracts: one invocation per cell of the surface map. The
-// light between four neighbouring rays is spread evenly over the piece of floor between the points where the rays
-// land. The brightness of that piece is the ratio of the two areas. Light is lost where the surface reflects it,
-// where an obstacle above the surface blocks it, beyond the edge of the floor, and where the surface breaks: water
-// whose neighbouring rays land more than torn_cells apart.
+// Sums on the floor the sunlight that the water's surface refracts. One invocation per cell of the surface map takes
+// the rays of four neighbouring cells. Their light is spread evenly over the piece of floor between the points where
+// the rays land: its brightness is the area between the rays without water, divided by the area of this piece. Light is
+// lost where the surface reflects it, where an obstacle above the surface blocks it, and beyond the edge of the floor.
+// If two of the rays land more than torn_cells apart, the surface is broken there, and the light of those rays that
+// enter water is lost too.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #include "caustic_units.glsl"
@@ -56,8 +57,8 @@ Landing landing_of(ivec2 cell) {
   return Landing(at / maps.floor_grid.x, kept);
 }
 
-// Adds `units` of light to a rectangle of the floor, at most one cell large; each cell gets the share that it
-// overlaps. Rectangles that tile the floor light it evenly.
+// Adds `units` of light to a rectangle of the floor; `middle` and `size` are in floor cells, and no side is longer than
+// a cell. Each cell gets the share of the light that falls on it. Rectangles that tile the floor light it evenly.
 void lay(vec2 middle, vec2 size, float units) {
   const vec2 from = middle - 0.5 * size;
   const ivec2 low = ivec2(floor(from));
@@ -104,7 +105,7 @@ void main() {
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const vec2 f = (vec2(i, j) + 0.5) / float(parts);
-      // Where the surface ends or jumps, each part uses the ray of the nearest corner instead of a mean of four rays.
+      // If the rays land too far apart, each part uses the ray of the nearest corner instead of a mean of four rays.
       const vec2 w = torn ? step(0.5, f) : f;
       const vec2 at = mix(mix(corners[0].at, corners[1].at, w.x), mix(corners[2].at, corners[3].at, w.x), w.y);
       const float kept =

@@ -1,6 +1,6 @@
 // Clears the buffers of the splat passes: one work group per tile of 16 x 8 px. Depth and front are cleared only in
-// tiles with water in the last picture (wet_tiles.glsl), because the others are still empty. Thickness is cleared in
-// all tiles: walls do not clip it, so that it also fills tiles without water.
+// tiles with water in the last picture (wet_tiles.glsl), because they are still empty in the other tiles. Thickness is
+// cleared everywhere: walls do not clip it, so that tiles without water may have thickness too.
 #include "view.glsl"
 #include "counters.glsl"
 #include "wide_list.glsl"

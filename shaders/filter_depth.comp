@@ -1,6 +1,6 @@
-// One pass of the narrow-range filter (Truong and Yuksel 2018) along x or y. Its width follows from the radius of the
-// particle in front of the pixel. A wide filter uses strided samples; a last pass with `dense` = 1 smooths between
-// them.
+// One pass of the narrow-range filter (Truong and Yuksel 2018) along x or y. The filter's width is proportional to the
+// radius of the front particle at the pixel. A wide filter samples only every n-th pixel; two further passes with
+// `dense` = 1 smooth between these samples.
 #include "view.glsl"
 #include "wet_tiles.glsl"
 #include "counters.glsl"

@@ -52,8 +52,8 @@ void main() {
   if (meet_obstacles(from, normalize(way)).at < length(way)) return;
 #endif
   const vec2 centre = (eye.xy / depth - rays.yw) / rays.xz;
-  // A disc with a radius of 1 px covers a pixel centre at least. Smaller discs are drawn with this radius; their
-  // optical depth is reduced by the ratio of the areas.
+  // A disc with a radius of 1 px covers at least one pixel's centre. Smaller discs are drawn with this radius, and
+  // their optical depth is reduced by the ratio of the areas.
   const float true_px = particle.w / (depth * rays.x);
   const float radius_px = clamp(true_px, 1.0, most_px);
   if (any(lessThan(centre, vec2(-radius_px))) || any(greaterThan(centre, vec2(size.xy) + radius_px))) return;

@@ -1,5 +1,5 @@
-// Writes per pixel the lowest index among the particles whose depth is the pixel's; one invocation per particle.
-// Takes only particles with small footprints; splat_wide.comp does the same for large ones.
+// Writes per pixel the lowest index among the particles whose depth equals the pixel's depth; one invocation per
+// particle. Handles particles with small footprints; splat_wide.comp handles those with large footprints.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"

@@ -1,4 +1,4 @@
-// The scene's only light, infinitely far away: unit vector towards it.
+// Unit vector towards the sun, the only directional light, infinitely far away.
 const vec3 sun = vec3(0.3536, 0.8130, 0.4625);
 const float into_water = 1.0 / 1.333;  // refractive index of air / that of water
 

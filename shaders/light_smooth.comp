@@ -18,7 +18,7 @@ layout(std430, binding = 2) writeonly buffer Target { vec4 target[]; };
 uniform ivec2 direction;
 
 const int most_taps = 24;
-const vec2 narrow = vec2(2.0, 4.0);  // height difference, particle radii: up to x a pair counts fully, from y on not
+const vec2 narrow = vec2(2.0, 4.0);  // height difference, particle radii: x full weight up to it, y none from it
 
 vec4 cell_at(int at) {
 #ifdef FIRST

@@ -55,8 +55,8 @@ void splat(vec3 centre, float own_radius) {
 }
 
 #ifdef IMAGES
-// True if the ray of sunlight through a particle is in water for more than half of its path between the surface and
-// the floor or wall. Spray and jets get no mirror image, because it would darken the floor a second time.
+// True if the ray of sunlight through a particle is in water for more than half of its path from the surface to the
+// floor or wall. Other particles, of spray and jets, get no mirror image: it would darken the floor a second time.
 bool is_in_pool(vec4 particle) {
   const vec2 through = particle.xz - leans * particle.y;
   const ivec2 cell = ivec2(floor((through - maps.surface_grid.xy) / maps.surface_grid.z));

@@ -1,7 +1,8 @@
 // Narrow-range filter of nearness (Truong and Yuksel 2018) on pairs of a sample and its mirror image. The range is
-// centre +- width. A sample behind the range counts as lying only `behind` behind the centre. A sample in front of
-// the range excludes the pair, unless its mirror image lies about as far behind: the surface is then slanted, and
-// both count.
+// centre +- width. If a sample lies behind the range, it counts as lying only `behind` behind the centre, and its
+// mirror image as at most `behind` in front of the centre. If a sample lies in front of the range, the pair is
+// excluded, unless the mirror image lies about as far behind the centre: the surface is then slanted, and both samples
+// count.
 struct Range {
   float centre, width, behind;
   float sum, weight;
@@ -16,8 +17,9 @@ void add_pair(inout Range range, float a, float b, float weight) {
   const float near = max(a, b) - range.centre, far = min(a, b) - range.centre;
   float both = near + far;
   if (near > range.width) {
-    // With n in front of the centre and f behind it, both count if n <= 2 f + 3/4 width and f <= 2 n + 3/4 width.
-    // Samples of a lone drop never come into this branch, because their depths differ by less than the width.
+    // n: how far the nearer sample lies in front of the centre; f: how far the other one lies behind it. Both samples
+    // count if n <= 2 f + 3/4 width and f <= 2 n + 3/4 width. Depths within a lone drop differ by less than the width,
+    // so that its samples do not come into this branch.
     if (min(a, b) == 0.0 || abs(both) > 0.5 * range.width + (near - far) / 3.0) return;
   } else if (far < -range.width) {
     both = near < -range.width ? -2.0 * range.behind : min(near, range.behind) - range.behind;

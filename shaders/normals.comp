@@ -1,6 +1,6 @@
 // Normals from the filtered nearness. On the plane n . p = d, nearness is n . (slope, -1) / d: its derivatives by the
-// two slopes are n.x / d and n.y / d. Each derivative is the smaller of the two one-sided differences (van der Laan
-// et al. 2009).
+// two slopes are n.x / d and n.y / d. Each derivative is the one-sided difference with the smaller absolute value (van
+// der Laan et al. 2009), or the only one if a neighbour has no water.
 #include "view.glsl"
 #include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

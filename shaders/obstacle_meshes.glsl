@@ -1,4 +1,4 @@
-// Obstacles that are meshes: signed distances, m, at the nodes of one grid per mesh. The solver uses the same grids.
+// Obstacles that are meshes: signed distances, m, at the nodes of one grid per mesh.
 layout(std430, binding = 5) readonly buffer ObstacleGrids {
   // Eight words per obstacle: low corner x, y, z and step (floats, m), nodes along x, y, z, index of the first
   // distance. The distances of all grids (floats) follow.
@@ -49,8 +49,8 @@ vec3 mesh_normal(MeshGrid grid, vec3 p) {
   return dot(slope, slope) > 0.0 ? normalize(slope) : vec3(0.0, 1.0, 0.0);
 }
 
-// Distance along a ray to the point where it enters the mesh; -1 if it does not. Steps as long as the signed distance
-// lead to the surface; bisection of the last step finds the point.
+// Distance along a ray to the point where it enters the mesh; -1 if it does not. Each step is as long as the distance
+// from the surface, but at least half a cell. The step that ends inside the mesh is bisected to find the point.
 float meet_mesh(MeshGrid grid, vec3 o, vec3 d) {
   const vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
   const vec3 high = grid.low + grid.step * vec3(grid.nodes - 1);

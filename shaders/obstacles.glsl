@@ -1,6 +1,6 @@
 // Rigid obstacles in the tank, and the first intersection of a ray with them.
 layout(std430, binding = 4) readonly buffer Obstacles {
-  vec4 obstacles[];  // three per obstacle: (centre, radius), (half sides, 1 for a mesh or 0), unit quaternion
+  vec4 obstacles[];  // three per obstacle: (centre, radius), (half sides, 1 if a mesh else 0), unit quaternion
 };
 uniform int obstacle_count;
 

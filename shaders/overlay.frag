@@ -1,4 +1,5 @@
-// Paints the value of the front particle over the picture: a scale from blue to yellow, or one colour per class.
+// Paints the value of the front particle over the picture: on a scale from violet to yellow, or with one colour per
+// class.
 #include "view.glsl"
 layout(std430, binding = 0) readonly buffer Front { uint front[]; };
 layout(std430, binding = 1) readonly buffer Values { float values[]; };

@@ -1,6 +1,6 @@
-// Computes the share of sunlight that obstacles and flying water let through to the floor, and the length of the
-// ray's path in the pool: one invocation per cell of the floor map. The ray to the cell is refracted by a flat
-// surface, as high as the water where the ray enters it.
+// Computes the share of sunlight that obstacles and flying water let through to the floor, and the length of the ray's
+// path in the pool: one invocation per cell of the floor map. The ray to the cell is refracted by a flat surface at the
+// height of the water where the ray enters it.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #ifdef OBSTACLES
@@ -12,7 +12,7 @@ layout(std430, binding = 1) writeonly buffer Shadow { vec2 shadow[]; };  // unbl
 
 const float turned_aside_per_m = 4.0;  // attenuation of light by scattering in flying water, 1/m
 const float sun_radius = 0.00465;      // angular radius, rad
-const int rays = 8;                    // per cell; each from another point of the cell to another point of the sun
+const int rays = 8;                    // per cell; each joins another point of the cell with another point of the sun
 
 vec4 surface_near(vec2 place) {
   const vec2 g = (place - maps.surface_grid.xy) / maps.surface_grid.z - 0.5;

@@ -77,7 +77,7 @@ vec2 tangent_slopes(float x, float z, float radius) {
   return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
 }
 
-// Lowest and highest slope along one axis of the visible part of a sphere: the part beyond the near plane.
+// Bounds of the slopes, along one axis, of the visible part of a sphere: the part beyond the near plane.
 vec2 clipped_slopes(float x, float z, float radius) {
   const float low = x - radius, high = x + radius;
   return vec2(low / (low < 0 ? origin.z : z + radius), high / (high > 0 ? origin.z : z + radius));
@@ -110,8 +110,8 @@ vec2 cell_slope(ivec2 cell, vec4 grid) {
   return slope;
 }
 
-// Length of the ray inside the whole sphere, in thickness units; for a subpixel sphere, its volume / area of the
-// cell. `precise`: every invocation that splats this sphere must add the same value.
+// Length of the ray inside the whole sphere, in thickness units; for a subpixel sphere, its volume / area of the cell.
+// `precise`: splat.comp and splat_wide.comp must compute the same bits.
 uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per_m) {
   precise float chord;
   if (subpixel) {

@@ -1,4 +1,4 @@
-layout(std430, binding = 1) buffer Depth { uint depth_bits[]; };  // bits of positive floats, ordered alike
+layout(std430, binding = 1) buffer Depth { uint depth_bits[]; };  // floats > 0; their bits have the same order
 layout(std430, binding = 3) buffer Thickness { uint thickness[]; };
 layout(std430, binding = 6) buffer Touched { uint touched[]; };  // per particle: see occlusion.glsl
 

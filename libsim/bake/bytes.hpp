@@ -1,5 +1,5 @@
 #pragma once
-/// Writes and reads little-endian values in byte buffers. Every read is checked against the buffer's end.
+/// Writes and reads little-endian values in byte buffers. A read beyond the end of a buffer is an error.
 
 #include <bit>
 #include <cstdint>

@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-/// Bits of the byte after the particle counts. They say which facts of the frame follow.
+/// Bits of the byte after the particle counts: which facts of the frame follow in the file.
 enum FactBits : std::uint8_t { has_temporal = 1, has_tau = 2, has_rate = 4, has_guards = 8, all_bits = 15 };
 
 /// Calls visit for every guard counter, in the order of the file.

@@ -7,7 +7,7 @@ namespace sim {
 
 namespace {
 
-/// The pixels from which the pixels of a row are predicted.
+/// How the pixels of a row are predicted: as 0, or from pixels to the left, above, or in the last picture.
 enum Predictor : std::uint8_t { None, Left, Above, Gradient, Previous, predictors };
 
 using Row = std::uint8_t*;

@@ -57,7 +57,7 @@ const BakePicture& PictureRing::take(std::int64_t frame) {
 }
 
 /// True if `frame` is one of the next 2 x capacity pictures; take() then drops the pictures before it. For
-/// any other frame take() restarts the decoding, which begins at the key picture before the frame.
+/// any other frame take() restarts the decoding, which begins at the last key picture up to the frame.
 bool PictureRing::comes_later(std::int64_t frame) const {
   std::int64_t next = expected_;
   for (std::size_t i = 0; i < 2 * slots_.size(); ++i, next = after(next)) {
@@ -91,8 +91,8 @@ void PictureRing::wait_beyond(std::uint64_t seen) {
 }
 
 void PictureRing::decode_loop() {
-  // A lower priority than that of the thread that shows pictures. Under unusual limits the call fails, which
-  // is harmless.
+  // Lowers this thread's priority below that of the thread that shows pictures. If the call fails, decoding
+  // works at the usual priority.
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 5);
   std::uint64_t round = 0;
   std::int64_t next = 0;

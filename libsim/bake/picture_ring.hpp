@@ -16,8 +16,8 @@ namespace sim {
 /// ring. Taking a ready picture takes no lock: a preempted decoding thread never blocks the consumer.
 class PictureRing {
  public:
-  /// `capacity`: number of pictures, at least 2. 24 pictures last 0.2 s if each is shown for 8 ms, and take
-  /// 22 MB at 640 x 360 px.
+  /// `capacity`: number of pictures; less than 2 counts as 2. 24 pictures last 0.2 s if each is shown for 8
+  /// ms, and take 22 MB at 640 x 360 px.
   explicit PictureRing(const BakeReader& bake, std::size_t capacity = 24);
   ~PictureRing();
   PictureRing(const PictureRing&) = delete;

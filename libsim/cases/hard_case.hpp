@@ -82,7 +82,7 @@ struct HardCase {
   std::vector<MethodKind> methods;
   /// The quantity that Setting::scale multiplies, such as "30 m/s of the jet"; empty = the case has none.
   const char* scaled;
-  /// simulated time of a frame, s, if the setting has none; S8 has three frame times: the shortest of them
+  /// simulated time of a frame, s, if the setting has none; for S8, the shortest of its three frame times
   double frame_dt_s;
   int iterations;  ///< projections per substep, if the setting has none
   /// base::Error for a missing back end; results of the simulation are never an error.

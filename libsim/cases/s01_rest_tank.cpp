@@ -20,7 +20,8 @@ Outcome run_s01(const Setting& setting) {
   options.n_star = std::lround(x * height * z / (d * d * d) / 8);
   const bool calm = !traits_of(setting.method).adaptive();
   Watch watch(with_effects(scene, setting), options, {.density = calm ? 1.08 : 1.3, .outside_m = 0.1 * d});
-  // Only the second half is measured: the lattice settles in the first half.
+  // The mean density error, the speed and the drift are measured in the second half only, because the lattice
+  // settles in the first half.
   const int frames = frames_of(setting, small ? 6 : 10);
   double half = 0, error = 0, rms = 0;
   for (int frame = 1; frame <= frames && watch.step(); ++frame) {

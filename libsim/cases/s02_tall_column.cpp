@@ -34,7 +34,8 @@ Outcome run_s02(const Setting& setting) {
   lost.asked = 0.03;
   Finding densest = watch.density_finding();
   densest.asked = 1.15;
-  // The limit is 5 d, because single drops leave the surface while the lattice settles.
+  // The limit is 5 spacings of the start, not 2, because single drops leave the surface while the lattice
+  // settles.
   Finding rise =
       at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
   rise.asked = 2;

@@ -27,7 +27,8 @@ Outcome run_s03(const Setting& setting) {
   start.insert(start.end(), fine.begin(), fine.end());
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.08, .outside_m = 0.1 * d});
-  // Not measured: the lattices settle in the first second.
+  // The height of the coarse water is measured from the end of the first second on, because the lattices
+  // settle in that second.
   for (int frame = 0; frame < frames_of(setting, 1) && watch.step(); ++frame) {
   }
   const double early = height_of_coarse(watch.state());

@@ -68,7 +68,7 @@ Outcome dam(const Setting& setting) {
       mostly.limit = 1.3;
       mostly.asked = 1.2;
     }
-    // Not 0: in a run of some 1e9 particle-substeps on an H200, FovFluid braked one particle.
+    // The limit is not 0: in a run of some 1e9 particle-substeps on an H200, FovFluid braked one particle.
     braked.limit = 20;
     braked.asked = 0;
   }

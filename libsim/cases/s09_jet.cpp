@@ -27,8 +27,9 @@ Outcome run_s09(const Setting& setting) {
       block(setting.method, low, {low[0] + length, low[1] + width, low[2] + width}, {speed, 0, 0});
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 1e-6});
-  // While the middle of the bar arrives, the wall receives the force rho A v^2. Divided by the bar's mass,
-  // this is a change of its mean velocity by v^2 / length per second.
+  // While the middle of the bar arrives, the wall receives the force rho A v^2, with the bar's cross-section
+  // A and its speed v. The bar's mass is rho A length, so that its mean velocity changes by v^2 / length per
+  // second.
   const double dt = frame_dt_of(setting);
   const int first = static_cast<int>(std::ceil(2 * gap / speed / dt - 1e-9));
   const int last = static_cast<int>(std::floor((gap + 0.75 * length) / speed / dt + 1e-9));

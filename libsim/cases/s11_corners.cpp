@@ -45,7 +45,7 @@ int inside(const State& state, const std::vector<Obstacle>& obstacles, double to
 }
 
 /// Largest rho / rho_0, in the last projection, of particles closer than their support to at least two walls.
-/// An obstacle counts as a wall.
+/// The floor and obstacles count as walls, a lid does not.
 double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   std::vector<RenderParticle> places;
   std::vector<float> error;

@@ -31,7 +31,7 @@ Outcome run_s24(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = small ? 64 : 2048;
   Watch watch(with_effects(scene, setting), options, {.density = 2, .outside_m = 0.1 * d});
-  // The long run is only for the GPU: three CPU cores took seven minutes for it.
+  // 300 s run only on a GPU, because three CPU cores take seven minutes for them.
   const double seconds = small ? 20 : setting.backend == Backend::Cuda ? 300 : 120;
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);
   const auto began = watch.fluid().particle_count();

@@ -12,8 +12,8 @@ enum class Backend { Cpu, Cuda };
 
 inline std::string backend_name(Backend backend) { return backend == Backend::Cpu ? "cpu" : "cuda"; }
 
-/// The back end "cpu", "cuda" or "auto" (CUDA if a device responds, otherwise the CPU). "cuda" without a
-/// device is a base::Error.
+/// The back end "cpu", "cuda" or "auto" (CUDA if a device responds, otherwise the CPU). base::Error
+/// for "cuda" without a device, and for another name.
 Backend choose_backend(std::string_view name);
 
 /// Bytes of the device's memory in use, by this program or others; none on the CPU.

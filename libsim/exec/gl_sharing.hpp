@@ -23,12 +23,13 @@ class GlSharing {
     return *this;
   }
 
-  /// Registers buffers of the current GL context and releases those registered before, unless both lists are
-  /// equal. False if a buffer cannot be shared: the back end is the CPU, or GL runs on another device.
+  /// Registers buffers of the current GL context after releasing the buffers of the last call; does nothing
+  /// if both lists are equal. False if a buffer cannot be shared: the back end is the CPU, or GL runs on
+  /// another device.
   bool accept(const std::vector<GlBufferRef>& buffers);
   /// The accepted buffers as memory, in the same order, until unmap(). Mapping twice has no further effect.
   /// Earlier GL commands finish first, and GL waits for work launched meanwhile. Each switch between GL and
-  /// the back end takes time on the device (docs/decisions.md): map once per frame, and unmap where GL
+  /// the back end took 0.16 to 0.31 ms on an H200 (docs/decisions.md): map once per frame, and unmap where GL
   /// continues anyway.
   const std::vector<void*>& map();
   /// Returns the buffers to GL; does nothing if they are not mapped.

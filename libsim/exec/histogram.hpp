@@ -106,7 +106,7 @@ struct TakeCounts {
   }
 };
 
-/// The memory of a histogram's counters, which are zero from take() until the next value is added.
+/// Owns the memory of a histogram's counters. take() resets them to zero.
 class HistogramStore {
  public:
   Histogram view(int bins) {

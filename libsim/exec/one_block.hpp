@@ -37,7 +37,7 @@ struct Walk {
 
 #ifdef SIM_CUDA
 
-/// The first warp of a block of threads. The host uses only the type, and never calls its functions.
+/// The first warp of a block of threads. Kernels call its functions; the host only needs them to compile.
 struct OneWarp {
   template <class F>
   SIM_FN void each(int n, F f) const {

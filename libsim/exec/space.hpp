@@ -204,9 +204,9 @@ int lanes_for(const F& f, int n) {
   }
 }
 
-/// Minimum number of blocks that a multiprocessor must be able to run at once. By default the compiler gives
-/// a thread so few registers that it waits for each load separately; passes over neighbours gain more from
-/// overlapping loads than from more blocks.
+/// Minimum number of blocks that a multiprocessor must be able to run at once. Without this number the
+/// compiler uses so few registers that a thread waits for each load separately. Passes over neighbours gain
+/// more from overlapping loads than from more blocks.
 constexpr int least_team_blocks = 4;
 
 template <int Size, class F>
@@ -249,8 +249,8 @@ void for_each_team(const char* label, int n, F f) {
 
 #else
 
-/// Number of indices that a thread takes at once: enough to hide the cost of taking them, and few enough that
-/// each thread takes several times, which balances the load.
+/// Size of the chunks in which OpenMP hands indices to threads: large enough to hide the cost of handing out,
+/// and small enough that each thread gets several chunks of a long loop, which balances the load.
 int grain_of(int n);
 
 /// Calls f(0) ... f(n-1) in any order; does nothing if n is 0. `label` names the pass in errors and profiles.

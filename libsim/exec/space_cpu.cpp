@@ -70,8 +70,7 @@ void LaunchTimer::end() {
 namespace {
 
 // Least-significant-digit radix sort over fixed chunks: stable, and so independent of the number of threads.
-// A digit that has the same value in all keys needs no pass. For keys of cells in a tank of a room's size,
-// this leaves about one pass per axis.
+// A digit that has the same value in all keys needs no pass.
 constexpr int digit_bits = 11;
 constexpr int buckets = 1 << digit_bits;
 constexpr int chunks = 8;

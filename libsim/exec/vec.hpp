@@ -1,6 +1,6 @@
 #pragma once
-/// Small vectors for kernels. They are in the back end's namespace: g++ and nvcc compile these functions
-/// differently, and of two inline functions with the same name the linker would keep only one.
+/// Small vectors for kernels. Each back end has them in its own namespace, because g++ and nvcc compile these
+/// functions differently: of two inline functions with the same name the linker keeps only one.
 
 #include <cmath>
 

@@ -113,7 +113,7 @@ struct Stay {
   }
 };
 
-/// Gives the lowest free ids to the new particles beyond the number of taken ones.
+/// Assigns the lowest free ids to the new particles that get no id of a taken particle.
 struct TakeFree {
   const int* free_ids;
   int* ids;
@@ -121,8 +121,7 @@ struct TakeFree {
 };
 
 /// Initialises the new particles, except position, velocity and temperature. Their target is their level, and
-/// their history says that it was in the last four frames too. Their saliency is not measured yet and is set
-/// to 0.
+/// the four entries of their history are this target. Saliency is not measured yet and is set to 0.
 struct Make {
   const int* ids;
   Vec4* position;
@@ -186,8 +185,8 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   }
   if (layers <= 0) return 0;
 
-  // The new order: the remaining particles, then one entry per new particle. These entries repeat particle 0,
-  // which Make overwrites.
+  // The new order: the remaining particles, then one entry per new particle. These entries are copies of
+  // particle 0; Make and the caller overwrite their columns.
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
@@ -201,7 +200,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                  .temperature = p.temperature(),
                  .heat = heat});
   if (made > cut.taken) {
-    // The taken particles' ids do not count as free: new particles have them already.
+    // The ids of the taken particles are not among the free ids, because new particles have got them already.
     list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
     for_each("take ids", made - cut.taken, TakeFree{free_ids_.data(), id_.data() + cut.taken});
   }

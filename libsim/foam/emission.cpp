@@ -63,12 +63,13 @@ struct Surface {
 };
 
 /// least_normal: minimum |n| of surface particles. least_push: minimum cosine between velocity and n for a
-/// particle that moves the surface outwards (Eq. 6).
+/// particle that moves the surface outwards (Ihmsen et al. 2012, Eq. 6).
 constexpr float least_normal = 0.3f;
 constexpr float least_push = 0.6f;
 
 /// Mean, weighted by kernel and mass, over surface neighbours j of (1 - n_i n_j) / r_ij below the tangent
-/// plane and 0 above it: convex crests count, troughs do not (Eq. 4 and 5, divided by the distance).
+/// plane and 0 above it: convex crests count, troughs do not (Ihmsen et al. 2012, Eq. 4 and 5, divided by the
+/// distance r_ij). n: unit normals.
 struct SumCurvature {
   Vec4 self;
   Vec3 out;
@@ -185,8 +186,8 @@ struct Emit {
   }
 
   /// Stores the c-th diffuse particle of water particle i in `slot`: at a random position in the cylinder
-  /// that particle i swept in this frame (Fig. 4). Its speed away from the cylinder's axis is its distance
-  /// from the axis times `approach`.
+  /// that particle i swept in this frame (Ihmsen et al. 2012, Fig. 4). Its speed away from the cylinder's
+  /// axis is its distance from the axis times `approach`.
   SIM_FN void put(int slot, int i, int c) const {
     const std::uint32_t seed =
         random_bits(static_cast<std::uint32_t>(id[i]), frame, static_cast<std::uint32_t>(c));

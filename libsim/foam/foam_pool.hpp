@@ -20,8 +20,8 @@ struct FoamLedger {
 };
 
 /// Limits between the kinds of diffuse particles, as rho / rho_0 of the surrounding water, computed as if
-/// water continued behind walls and in obstacles. A count of neighbours would depend on the particles'
-/// levels.
+/// water continued behind walls and in obstacles. Ihmsen et al. use the number of
+/// neighbours, which would depend on the particles' levels here.
 struct FoamKinds {
   static constexpr float spray = 0.2f;    ///< below this: spray
   static constexpr float bubble = 0.75f;  ///< above this: bubble
@@ -29,9 +29,9 @@ struct FoamKinds {
 
 /// Cells on which the closing speed of the water is measured, and this frame's results. The closing speed is
 /// the speed at which parts of the water approach each other. The edge of the cells is the effect's length_m,
-/// or follows from the volume of the water; it is at least 1.5 spacings of the coarsest particles. The speed
-/// is measured between cells, because differences between neighbouring particles depend on their sizes, their
-/// time steps and unsolved particles, and differences between cell means do not.
+/// or by default a sixth of the cube root of the water's volume; it is at least 1.5 spacings of the coarsest
+/// particles. The speed is measured between cell means, because the difference between two neighbouring
+/// particles would depend on their sizes, on the time step and on whether both were solved.
 struct MeetingCells {
   static constexpr int most_cells = 1 << 20;
 
@@ -87,9 +87,10 @@ struct FoamPool {
 
 /// Fills MeetingCells::meeting. A least-squares fit over a cell and the 26 around it gives the gradient G of
 /// the cells' mean velocities. Ihmsen et al. (2012, Eq. 2) measure the approach of two points along the unit
-/// vector e by (|G e| - e G e) times their distance. The result is the mean of |G e| - e G e over all e,
-/// times the share of water in the surrounding cells, because air is trapped between water. Space behind
-/// walls or in obstacles is left out of the share. Bounds: Walls, or Solids in scenes with obstacles.
+/// vector e by (|G e| - e G e) times their distance. The result is the mean of |G e| - e G e over all
+/// directions e, with |G e| sampled in 13 of them, times the share of the surrounding cells that water fills,
+/// because air is trapped between water. Space behind walls or in obstacles is left out of the share. Bounds:
+/// Walls, or Solids in scenes with obstacles.
 template <class Bounds>
 void find_meeting(MeetingCells& cells, MovingView water, const Bounds& bounds);
 

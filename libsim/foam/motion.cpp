@@ -75,8 +75,8 @@ struct Move {
     }
     const Vec3 carried = (1 / round.share) * round.momentum;
     if (share <= FoamKinds::bubble) return carried;
-    // Bubbles: the buoyancy is 2 g, including the added mass; the drag is chosen so that `rise` is the final
-    // speed.
+    // Bubbles: buoyancy accelerates a bubble and its added mass (half of the displaced water's) by 2 g. The
+    // drag is chosen so that `rise` is the final speed relative to the water in Earth's gravity.
     const float follows = 1 - expf(-2 * earth_gravity / rules.rise * rules.dt);
     const Vec3 wish = carried + (rules.rise * rules.gravity.strength / earth_gravity) * rules.gravity.up;
     return v + follows * (wish - v);

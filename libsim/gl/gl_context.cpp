@@ -83,7 +83,7 @@ struct EglState final : public GlContext::State {
       }
       eglDestroyContext(display, context);
     }
-    // No eglTerminate: displays are shared by all contexts of a process.
+    // eglTerminate() is not called, because all EGL contexts of the process share the display.
   }
 
   void create(EGLContext shared) {

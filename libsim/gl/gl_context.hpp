@@ -36,7 +36,7 @@ class GlContext {
   ~GlContext();
 
   /// Uses GLX on the X display that $DISPLAY names, for libraries that do not support EGL. base::Error if
-  /// there is no such display or it gives no OpenGL 4.5 core context.
+  /// there is no such display, or no OpenGL 4.5 core context on it.
   static GlContext make_on_x();
 
   /// Another context that shares textures and buffers with this one; not current on any thread. base::Error
@@ -60,9 +60,9 @@ class GlContext {
 
 /// GL_RENDERER and GL_VERSION of the current context, for records and logs.
 std::string gl_description();
-/// True if the current context is rendered on the CPU (llvmpipe, softpipe, SWR).
+/// True if the current context is rendered on the CPU, by the name of the renderer (such as llvmpipe).
 bool gl_is_software();
-/// base::Error unless a context of OpenGL 4.5 or newer is current; call once after a window created one.
+/// base::Error unless a context of OpenGL 4.5 or newer is current. Call it once for each new context.
 void require_gl45();
 
 }  // namespace sim

@@ -150,7 +150,7 @@ struct GlxState final : public GlContext::State {
     if (context && !errors.any()) return true;
     if (context) glXDestroyContext(display.get(), context);
     context = nullptr;
-    drawable = 0;  // the server may not have made the surface; closing the connection frees it
+    drawable = 0;  // not destroyed, because it may not exist; closing the connection frees it
     return false;
   }
 };

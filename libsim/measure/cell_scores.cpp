@@ -47,7 +47,7 @@ std::string in_words(const CellKey& key) {
 }
 
 std::string exact(double value) {
-  if (std::isnan(value)) return "nan";  // one text for every NaN: its sign has no meaning
+  if (std::isnan(value)) return "nan";  // not "-nan", whatever the sign of the NaN
   return base::shortest(value);
 }
 

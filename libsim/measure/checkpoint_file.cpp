@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // raise the number if the layout changes
 constexpr std::size_t most_file_bytes = std::size_t{4} << 30;
 constexpr std::size_t shown_digits = 12;
-constexpr int packing = 1;  // fastest compression level; enough, because most pixels hold no water
+constexpr int packing = 1;  // zstd level, a fast one; most pixels hold no water and compress well
 static_assert(std::is_trivially_copyable_v<sim::ParticleState> && sizeof(sim::ParticleState) == 32);
 
 using Fields = std::vector<std::pair<std::string, std::string>>;

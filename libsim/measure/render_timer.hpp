@@ -50,7 +50,7 @@ class RenderTimer {
   };
   /// Draws untimed pictures first, because the driver compiles at the first draw.
   void warm_up(sim::Simulation& fluid);
-  /// Call it when the solver is idle.
+  /// Draws and times one picture of the fluid. Call it when the solver is idle.
   Times draw(sim::Simulation& fluid);
   /// Call it before a frame, as a live session does: passes the first view, a gaze at its middle and the last
   /// picture to the fluid.

@@ -33,8 +33,8 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const float longest = std::max(tank(0), tank(2));
   const float edge = longest / static_cast<float>(options.floor_cells);
   const float surface_edge = edge * surface_cell_in_cells;
-  // Assumed upper bound of the water's depth: the tank's height, or its longer side if this is less. Higher
-  // particles are in the air.
+  // Assumed upper bound of the water's depth, from which the extent of the surface map beyond the floor
+  // follows: the tank's height, or the floor's longer side if that is less.
   const float deepest = std::min(tank(1), longest);
   const auto cells = [](float length, float of) { return static_cast<std::int32_t>(std::ceil(length / of)); };
   const int before = cells(aside_with_the_sun * deepest, surface_edge) + border_cells;

@@ -62,8 +62,8 @@ struct RenderOptions {
   /// Samples behind the narrow range count as if they were this far behind the filtered pixel's surface.
   float filter_mu_r = 1;
   /// Number of rounds of the depth filter, each along x and then y (Truong and Yuksel iterate too). After
-  /// them, one more round without strides smooths between the strided samples. A value of 1 leaves streaks,
-  /// because the pass along y spreads the values at a crest along the column.
+  /// them, one more round without strides smooths between the strided samples. A single round leaves streaks,
+  /// because its pass along y spreads the depth of a wave's crest along the column.
   int filter_rounds = 2;
   /// The filter reaches 3 sigma, but at most this many px; pixels with a truncated filter are counted.
   int filter_max_px = 256;
@@ -79,7 +79,7 @@ struct RenderOptions {
   /// Beer-Lambert absorption of red, green and blue, 1/m.
   std::array<float, 3> absorption_per_m{0.45F, 0.14F, 0.10F};
   /// Footprints up to this many px per side are splatted by one invocation; 0: 16 on a GPU, 64 on software
-  /// GL.
+  /// GL, but not more than group_px.
   int thread_px = 0;
   /// Larger footprints up to this many px per side are splatted by a team of 8 x 4 invocations, still larger
   /// footprints by many work groups.
@@ -172,7 +172,7 @@ class FluidRenderer {
   GBuffer read_gbuffer(std::size_t view = 0) const;
   /// Only GBuffer::depth of a view of the last draw.
   std::vector<float> read_depth(std::size_t view = 0) const;
-  /// The light on the floor of the last draw, over all its views; waits for the device. base::Error if the
+  /// The light on the floor in the last draw, which all views share; waits for the device. base::Error if the
   /// scene lists no picture effect with a strength above 0, or nothing was drawn.
   FloorMap read_floor() const;
   /// Counts of the last draw; waits for the device.

@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Times the passes of a draw. Needs a current context. Calls cost nothing if `on` was false.
+/// Times the passes of a draw. Needs a current context. With `on` = false all calls do nothing.
 class PassTimer {
  public:
   explicit PassTimer(bool on);

@@ -101,8 +101,8 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
                                 (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
-  // llvmpipe runs invocations as SIMD lanes, so a whole work group for one small footprint is slower. There
-  // one invocation draws footprints of up to 64 px, else of up to 16 px.
+  // On llvmpipe one invocation draws footprints of up to 64 px, on a GPU of up to 16 px: llvmpipe runs
+  // invocations as SIMD lanes, so that a team of invocations for a small footprint is slower there.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));
   counters.fill(0);

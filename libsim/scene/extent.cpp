@@ -56,7 +56,7 @@ namespace {
 constexpr double always_allowed_cells = 1 << 20;
 constexpr double cells_per_particle = 16;
 constexpr int most_substeps = 1000;
-/// Largest ratio of tank side to spacing for which undersides are measured. Larger tanks are not checked.
+/// Largest ratio of a tank's longer side to the spacing for which check_ways() checks the tank.
 constexpr int most_looks = 1024;
 
 void check_water(const Scene& scene, const std::string& place, const Resolution& resolution) {

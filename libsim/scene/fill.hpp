@@ -32,11 +32,13 @@ Scene acting_scene(Scene scene, MethodKind method);
 
 /// Exactly particle_count(method, n_star) points, minus those inside obstacles, block by block. Each block
 /// has its share of the points by volume, rounded by largest remainders. A block is filled in layers from its
-/// floor up, of which the last may be partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 /
-/// ((Lx / nx)(Lz / nz)).
+/// floor up, of which the last may be partial. A layer has nx = round(Lx / d) by nz = round(Lz / d) points,
+/// with the block's sides Lx and Lz and d = Resolution::spacing_m; the vertical pitch is d^3 / ((Lx / nx)(Lz
+/// / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
+/// Substeps per frame: max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene
+/// and n_*. dt: duration of a frame; 4 r_*: support of the finest particles.
 int substeps_of(const Scene& scene, std::int64_t n_star);
 
 /// Kinematic viscosity, m2/s, the same for all methods, levels and time steps: the scene's value or, if
@@ -45,8 +47,9 @@ int substeps_of(const Scene& scene, std::int64_t n_star);
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
 /// Dimensionless numbers of a scene. They use the shortest side of all blocks of water as the length L,
-/// time.v_ref_m_s as the speed v, the viscosities of the water and of the effect, gravity and tension. A
-/// number is 0 if its numerator is 0, and otherwise infinite if its divisor is 0.
+/// time.v_ref_m_s as the speed v, the viscosities of the water and of the effect, the size g of gravity,
+/// and the tension sigma of the effect cohesion. A number is 0 if its numerator is 0, and otherwise infinite
+/// if its divisor is 0.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
   double viscosity_m2_s = 0;  ///< nu, of the water and of the effect

@@ -33,7 +33,7 @@ Matrix principal_axes(Matrix& a) {
       q = column;
     }
     if (std::abs(a[p][q]) <= least) break;
-    // Two rotation angles set a[p][q] to 0; this is the smaller one.
+    // Of the two rotation angles that make a[p][q] zero, the smaller one.
     const double gap = a[q][q] - a[p][p];
     const double angle = gap == 0 ? std::numbers::pi / 4 : 0.5 * std::atan(2 * a[p][q] / gap);
     const double c = std::cos(angle), s = std::sin(angle);
@@ -118,7 +118,7 @@ std::array<bool, 3> round_about(const Triangles& mesh) {
 
 /// Computes the distances at all nodes. Threads take the rows of the grid one by one.
 void bake(const SurfaceTree& tree, DistanceGrid& out) {
-  // Separate names: clang 14 does not allow lambdas to capture structured bindings.
+  // No structured binding of out.nodes, because clang 14 does not allow lambdas to capture one.
   const int nx = out.nodes[0], ny = out.nodes[1], rows = ny * out.nodes[2];
   std::atomic<int> next = 0;
   const auto work = [&] {

@@ -20,7 +20,7 @@ struct DistanceGrid {
 };
 
 /// Volume, centre of mass and moments of the solid enclosed by a surface, for uniform density: sums over the
-/// tetrahedra from one point to its triangles.
+/// tetrahedra that one point forms with each triangle.
 struct MassProperties {
   double volume_m3 = 0;
   std::array<double, 3> centre_m{};

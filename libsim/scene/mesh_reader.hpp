@@ -1,5 +1,5 @@
 #pragma once
-/// Reads meshes of a scene's obstacles: from a file next to the scene's, or from text in it.
+/// Reads meshes of a scene's obstacles, from an OBJ file or from text in the scene file.
 
 #include <filesystem>
 #include <memory>

@@ -312,7 +312,7 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 Vec3d Gravity::up() const {
   const double all = size();
   if (!(all > 0)) return {0, 1, 0};
-  // 0 - a and not -a, so that a component of 0 gives +0.
+  // 0 - a instead of -a: the result is +0, not -0, for a component of 0.
   return {0 - along[0] / all, 0 - along[1] / all, 0 - along[2] / all};
 }
 

@@ -64,7 +64,8 @@ std::string value_words(SolverKnob knob, double value);
 /// settings with equal texts run alike.
 std::string to_text(const SolverSetting& setting);
 
-/// The setting that a program with these options runs. Beta is NaN if it follows the frame rate.
+/// The setting that a program with these options runs. With temporal acceleration, Beta is NaN unless
+/// TemporalOptions::fixed_tau is set.
 SolverSetting setting_of(const Scene& scene, const SimulationOptions& options);
 
 /// Options for the solver; `seed` is that of temporal acceleration.

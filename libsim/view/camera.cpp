@@ -131,7 +131,8 @@ View make_view(const Camera& camera, int width, int height) {
 
 PixelRays pixel_rays(const View& view) {
   const Mat4& p = view.projection;
-  // ndc = p0 * slope - p8 with ndc = 2 x / width - 1.
+  // The normalised device coordinate along x is p[0] * slope - p[8] and also 2 x / width - 1; along y alike,
+  // with p[5] and p[9].
   return {2 / (static_cast<float>(view.viewport.width) * p[0]), (p[8] - 1) / p[0],
           2 / (static_cast<float>(view.viewport.height) * p[5]), (p[9] - 1) / p[5]};
 }

@@ -13,9 +13,11 @@ using Mat4 = std::array<float, 16>;
 
 Mat4 identity();
 Mat4 multiply(const Mat4& a, const Mat4& b);
-/// World to eye. Errors (base::Error): eye and target coincide, or the view direction is parallel to +y.
+/// World to eye. Errors (base::Error): eye and target coincide, or the view direction is parallel to the y
+/// axis.
 Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m);
-/// Symmetric frustum; vertical field of view in (0, 180) degrees, aspect = width / height, 0 < near < far.
+/// Symmetric frustum; vertical field of view in (0, 180) degrees, aspect = width / height, 0 < near < far;
+/// base::Error otherwise.
 Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double far_m);
 /// The frustum between slopes relative to the viewing direction, right > left and up > down; 0 < near < far.
 Mat4 frustum(double left, double right, double down, double up, double near_m, double far_m);

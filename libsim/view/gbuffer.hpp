@@ -21,8 +21,9 @@ struct GBuffer {
   int width = 0, height = 0;
   View view;  ///< camera of this picture
 
-  /// Splatted radius divided by the particle's radius: with positive eye depth z, Eq. 8 reads d_t = max(0,
-  /// z_i - depth[p] - radius_scale * r_i).
+  /// Splatted radius divided by the particle's radius. In Eq. 8 of ViP-Fluid, particle i with the eye depth
+  /// z_i > 0 and the radius r_i at pixel p lies max(0, z_i - depth[p] - radius_scale * r_i) m behind the
+  /// water's surface.
   float radius_scale = 1;
 
   std::vector<float> depth;           ///< front of the splatted spheres, not smoothed (Eq. 8)
