@@ -71,7 +71,7 @@ struct SimulationOptions : SolverNumbers {
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; if particles split and merge, ids must be unique and below the capacity (particle_capacity).
   std::optional<std::vector<ParticleState>> start;
-  /// Number of frames that the run had before `start`; nozzles continue from this frame. >= 0.
+  /// Number of the frame that `start` shows, >= 0; nozzles and moving obstacles continue from this frame.
   int start_frame = 0;
   /// For starts in the middle of a run: maximum number of density projections that move the particles of
   /// `start` until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities do not

@@ -10,11 +10,12 @@
 /// The footer is written last, so that a truncated file is detected. Positions have 16 bit per axis over each
 /// frame's bounding box: the error is at most extent / 131070; for water the writer keeps it below a
 /// twentieth of the finest radius. The radii of foam particles and the temperatures of water particles are
-/// stored likewise, each over its range in the frame. All else is exact, including each frame's account (not
-/// in format 1). Since format 3 the header contains the view (BakedView) and the inputs of tau. Since format
-/// 4 it contains the computed effects, and foam is stored. Since format 5 particles may have temperatures,
-/// and the header contains the overlay and the picture's effects. A bake without contents of format 5 is
-/// written in format 4. Equal content gives equal bytes (no date is stored).
+/// stored with 16 bit too, each over its range in the frame. All other values are exact. Each frame has its
+/// account; format 1 stores only the particle counts of it. Since format 3 the header contains the view
+/// (BakedView) and the inputs of tau. Since format 4 it contains the computed effects, and foam is stored.
+/// Since format 5 particles may have temperatures, and the header contains the overlay and the picture's
+/// effects. A bake without contents of format 5 is written in format 4. Equal content gives equal bytes (no
+/// date is stored).
 
 #include <cstdint>
 #include <filesystem>

@@ -22,8 +22,8 @@ Outcome run_s23(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 512 : setting.backend == Backend::Cpu ? 4096 : 32 * 1024;
   Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});
-  // The first two frames do not count: the lattice expands to its rest density in them, which raises the
-  // water by up to half a per cent.
+  // The first two frames do not count: in them the lattice expands to its rest density, which raises the
+  // water.
   for (int frame = 0; frame < 2; ++frame) watch.step();
   const double start = energy(watch.state());
   double most = 0, last = 0;

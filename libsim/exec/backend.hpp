@@ -1,5 +1,5 @@
 #pragma once
-/// Choice of a back end by its name.
+/// The back ends: choice by name, device name and memory.
 
 #include <cstdint>
 #include <optional>

@@ -20,8 +20,6 @@
 
 namespace sim::SIM_BACKEND {
 
-// Atomic additions and maxima on one memory location.
-
 #ifdef SIM_CUDA
 
 template <class T>
@@ -163,8 +161,8 @@ SIM_FN float rough_root(float x) {
 #endif
 }
 
-/// The root r of `square`, which must be > 0, and quotients under(value) = value / r. On the GPU both come
-/// from one reciprocal root.
+/// The root r of `square`, which must be > 0, and quotients under(value) = value / r. On the GPU the
+/// root and the quotients are computed from one approximate reciprocal root.
 struct Root {
 #ifdef __CUDA_ARCH__
   float r, inverse;

@@ -1,5 +1,5 @@
 #pragma once
-/// Durations of a frame's launches, for benches.
+/// Durations of launches, summed by label, for benches.
 
 #include <algorithm>
 #include <map>

@@ -176,7 +176,7 @@ struct OneBlock {
   float least(int n, float most, int& where, F f) const {
     return Walk{0, 1, n}.least(most, where, f);
   }
-  /// Calls f with this block, which takes the role of the GPU's warp.
+  /// Calls f with this block, whose functions are those of the GPU's OneWarp.
   template <class F>
   void by_one_warp(F f) const {
     f(*this);

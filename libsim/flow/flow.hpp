@@ -45,8 +45,8 @@ struct Corners {
   }
 };
 
-/// The source of a nozzle's water: in the four corner columns of the tank, the particles that are lowest with
-/// respect to gravity.
+/// Finds the water that nozzles take: the particles in the four corner columns of the tank, the lowest along
+/// gravity first.
 class CornerColumns {
  public:
   /// Lists the particles in the corners by their height along `up`, lowest first, ties by id, so that the

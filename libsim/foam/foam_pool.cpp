@@ -7,7 +7,6 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Number of cells of `edge` along a length.
 float count_along(float length, float edge) { return std::max(1.0f, std::ceil(length / edge - 1e-4f)); }
 
 }  // namespace

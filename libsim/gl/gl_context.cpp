@@ -119,7 +119,7 @@ struct EglState final : public GlContext::State {
   }
 
   bool make_current() override {
-    eglBindAPI(EGL_OPENGL_API);  // each thread has its own bound API
+    eglBindAPI(EGL_OPENGL_API);  // EGL stores the bound API per thread
     return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
   }
   void release() override { eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t max_shader_bytes = std::size_t{1} << 20;
 
-/// The text of a shader with its includes expanded.
 std::string expand(const std::string& file, int depth) {
   if (depth > 8)
     throw base::Error("shaders/" + file, "includes itself, or is included more than 8 files deep",

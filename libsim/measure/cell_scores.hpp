@@ -35,7 +35,8 @@ struct CellKey {
 using CellValues = std::array<double, still_metrics.size()>;
 using CellScores = std::map<CellKey, CellValues>;
 
-/// One row per picture; its values read back to the same bits. A block without values gives no rows.
+/// One row per picture, with enough digits that read_cells() returns the same values bit for bit. A block
+/// without values gives no rows.
 figures::TextTable cell_rows(const std::vector<ScoreBlock>& blocks);
 
 /// Reads the CSV of cell_rows(). base::Error at the file and its line.

@@ -17,8 +17,8 @@ struct SheetColumn {
 /// Joins columns of equal size, left to right.
 sim::Image contact_sheet(const std::vector<SheetColumn>& columns);
 
-/// Writes PNG files on threads of its own, because compression takes longer than drawing. finish() must be
-/// called: it waits for the files and throws the first error of writing.
+/// Writes each PNG file on a thread of its own, because compression takes longer than drawing. finish() must
+/// be called: it waits for the files and throws the first error of writing.
 class SheetWriter {
  public:
   void write(std::filesystem::path path, sim::Image image);

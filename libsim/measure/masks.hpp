@@ -21,9 +21,10 @@ std::size_t pixels_of(const Mask& mask);
 /// Pixels whose ray lies within `half_angle_deg` of the gaze, as seen from the view's eye.
 Mask fovea_mask(const sim::View& view, const sim::Gaze& gaze, double half_angle_deg);
 
-/// The most salient fifth of the fluid's pixels, without those of `without`. A pixel's value is the F of the
-/// particle in front, by_id[ids[front]], and not its s, because many particles have s = 1. Non-finite values
-/// count as 0; ties with the last pixel of the fifth are included.
+/// The most salient fifth of the fluid's pixels, minus the pixels of `without`. A pixel's value is the
+/// combined feature F (Eq. 1) of its front particle, by_id[ids[front]]. The saliency s would not rank the
+/// pixels, because many particles have s = 1. Non-finite values count as 0; ties with the last pixel of the
+/// fifth are included.
 Mask salient_mask(const sim::GBuffer& picture, std::span<const int> ids, std::span<const float> by_id,
                   const Mask& without);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Step times of other fluid programs at one setting, and ViP-Lab's times at the same setting.
+/// Times per step of other fluid programs (peers) and of ViP-Lab, in the same scene with the same time step.
 
 #include <filesystem>
 #include <optional>

@@ -71,7 +71,6 @@ const MapCell* find(const StabilityMap& map, const std::string& id, const std::s
   return found == map.cells.end() ? nullptr : &*found;
 }
 
-/// The circumstances of the measurement and the effects of the water, as text.
 std::string measured_on(const StabilityMap& map) {
   std::string out = map.circumstances;
   for (const std::string& effect : map.effects) out += "; effect " + effect;

@@ -17,7 +17,7 @@
 
 namespace measure {
 
-/// The defaults are those of the paper and of the scenes.
+/// Options of `vip-bench table1`.
 struct Table1Options : TableOptions {
   int checkpoints = 0;       ///< number of the scene's checkpoints to use; 0 = all
   int gazes = 3;             ///< gaze points per checkpoint

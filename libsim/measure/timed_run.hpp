@@ -15,11 +15,11 @@ namespace measure {
 /// progress line.
 std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
 
-/// Processor and number of cores. Leaves out the operating system, which does not affect the numbers.
+/// Processor and number of cores.
 std::string processor();
 
 /// Density error and numbers of neighbours, averaged over states spread over the run, and the largest density
-/// of these states. With several states, a single calm or violent moment does not decide the result.
+/// of these states.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;

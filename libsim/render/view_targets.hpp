@@ -36,7 +36,8 @@ struct ViewTargets {
   /// Allocates the buffers with an entry per particle for `count` particles.
   void follow(std::int64_t count);
 
-  // As in FluidRenderer. A memory barrier must come between the passes and these reads.
+  // Implement the functions of FluidRenderer. The caller sets a memory barrier between the passes and the
+  // reads.
   void read_depth(std::vector<float>& out) const;
   void read_picture(const RenderOptions& options, GBuffer& out) const;
   GBuffer read_gbuffer(const RenderOptions& options) const;

@@ -1,5 +1,5 @@
 #pragma once
-/// An attraction to an axis, in addition to gravity or instead of it.
+/// A force towards an axis, in addition to gravity.
 
 #include <array>
 #include <optional>

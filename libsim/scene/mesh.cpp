@@ -49,7 +49,6 @@ Matrix principal_axes(Matrix& a) {
   return axes;
 }
 
-/// Quaternion of a rotation matrix.
 std::array<double, 4> quaternion_of(const Matrix& m) {
   const double trace = m[0][0] + m[1][1] + m[2][2];
   std::array<double, 4> out{};

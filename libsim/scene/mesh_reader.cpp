@@ -42,7 +42,6 @@ Triangles read_triangles(const base::TomlTable& table, const std::optional<std::
   return read_file(*beside / name);
 }
 
-/// The text after leading blanks.
 std::string_view after_blanks(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
 }

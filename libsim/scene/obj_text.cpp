@@ -122,7 +122,6 @@ class Reader {
               "close the surface; corners at the same point must use the same vertex (merge by distance)");
     }
   }
-  /// Vertices that no face uses are dropped; the others keep their order.
   void leave_out_loose_places() {
     std::vector<int> number(mesh_.places.size(), -1);
     for (const auto& face : mesh_.faces) {

@@ -19,7 +19,7 @@ class Mesh;  // libsim/scene/mesh.hpp
 
 enum class ObstacleShape { Sphere, Box, Capsule, Mesh };
 
-/// Lowest density of a free obstacle; lighter ones would leap too high out of the water.
+/// Lowest density of a free obstacle. A lighter one would rise out of the water much too high.
 inline constexpr double lightest_free_kg_m3 = 50;
 
 /// Motion of an obstacle once the water has settled.
@@ -82,7 +82,7 @@ std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, doubl
 std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& own_m);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
-/// True if the point is inside. For a point far from a mesh, cheaper than the distance.
+/// True if the point is inside. Cheaper than signed_distance() for a point far from a mesh.
 bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half sides of the shape's inner box, along its own axes: the shape is every point within radius_m of that
 /// box. A capsule's inner box is its axis, a sphere's its centre. The inner box of a mesh contains the mesh.

@@ -257,7 +257,6 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
             base::shortest(std::min(scene.tank_size_m[0], scene.tank_size_m[2]) / 2) + " m");
 }
 
-/// Reads min_m and max_m of a table.
 template <class Box>
 void read_box(const base::TomlTable& table, const Vec3d& origin_m, Box& box) {
   box.min_m = place(table, "min_m", origin_m);

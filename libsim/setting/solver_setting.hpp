@@ -16,9 +16,9 @@ enum class SolverKnob {
   Size,          ///< n_*, number of particles if all have the coarsest level
   Rate,          ///< frames per second of fluid time
   Iterations,    ///< projections per substep
-  Substeps,      ///< per frame; 0 = as many as the fastest particle needs
+  Substeps,      ///< per frame; 0 = as many as speeds, forces and effects need
   CoarseCycles,  ///< V-cycles of the coarse pressure
-  Momentum,      ///< share of the last projection's displacement that the next one repeats
+  Momentum,      ///< factor on the last projection's displacement, which the next one repeats
   Levels,        ///< N, number of levels
   Alpha,         ///< weight of the temporal feature, Eq. 1
   Fovea,         ///< theta_f, degrees, Eq. 3

@@ -29,7 +29,6 @@ struct Header {
   Mat4 view, projection;
 };
 
-/// Extracts the arrays of the file one after the other.
 struct PlaneReader {
   std::string_view rest;
   template <class T>
