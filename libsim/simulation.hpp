@@ -32,7 +32,7 @@ struct TargetRegion {
   Vec3d centre_m{};
   double radius_m = 0;
   int inside = 0;   ///< level 0 .. 3, limited to SimulationOptions::levels - 1
-  int outside = 0;  ///< likewise
+  int outside = 0;  ///< level, with the same limits
 };
 
 /// Options of temporal acceleration (ViP-Fluid, Algorithm 3), such as the source of tau. Methods without
@@ -162,7 +162,7 @@ struct PartTimes {
   double saliency_ms = 0;    ///< Eq. 1-9
   double levels_ms = 0;      ///< grading, splitting, merging
   double activation_ms = 0;  ///< Eq. 12-14 and the velocity grid
-  double solve_ms = 0;       ///< everything else
+  double solve_ms = 0;       ///< all other passes
 };
 
 /// A pass of the compiled schedule.

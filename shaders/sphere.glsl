@@ -7,7 +7,7 @@ uniform uint particle_count;
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
   float radius;
-  bool cut;   // true if the sphere reaches through a wall, the floor or a lid
+  bool cut;   // true if walls cut spheres and the sphere reaches through a wall, the floor or a lid
   vec3 wall;  // per axis, position of the wall that the sphere reaches, relative to the eye, m; distant if none
   vec3 inward;  // per axis, direction from that wall into the tank, 1 or -1
   mat3 to_world;

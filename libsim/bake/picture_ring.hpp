@@ -60,7 +60,7 @@ class PictureRing {
   PictureReader reader_;
   std::vector<Slot> slots_;
 
-  // Numbers of slots filled and released since the start; filled_ - freed_ slots contain pictures. Each
+  // Numbers of slots filled and released since construction; filled_ - freed_ slots contain pictures. Each
   // counter is written by one thread only.
   std::atomic<std::uint64_t> filled_ = 0;
   std::atomic<std::uint64_t> freed_ = 0;

@@ -11,8 +11,8 @@
 
 namespace sim::cases {
 
-/// Size of a case. Small: takes seconds on one core. Full: the size in the table of hard cases
-/// in docs/results.md.
+/// Size of a case. Small: takes seconds on one core. Full: the size in the table of hard cases in
+/// docs/results.md.
 enum class Size { Small, Full };
 
 /// Parameters of a case. For times and counts, 0 = the case's own value.

@@ -67,8 +67,8 @@ double densest_in_corners(const Simulation& fluid, const Scene& scene) {
 }
 
 /// Counts particles that hang in the air: above 2 d, without neighbours, and without motion for two frames.
-/// Without motion means less than g dt^2 / 3 per frame. A flying particle moves less in at most
-/// one frame, because its motion per frame changes by g dt^2 each frame.
+/// Without motion means less than g dt^2 / 3 per frame, with the frame's duration dt. A flying particle moves
+/// less in at most one frame, because its motion per frame changes by g dt^2 each frame.
 class Hanging {
  public:
   explicit Hanging(double frame_dt_s) : still_m_(gravity * frame_dt_s * frame_dt_s / 3) {}

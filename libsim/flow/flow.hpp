@@ -84,8 +84,7 @@ class Exchange {
   /// than the heaviest particle's, in the reservoir. New particles get the freed ids, then the lowest free
   /// ids below the capacity. The caller sets their positions and velocities, and their temperatures if they
   /// have any. Unless `heat` is null, the heat of the taken particles is added to it. Returns the number of
-  /// layers made:
-  /// fewer than requested if the mass or the capacity does not suffice.
+  /// layers made: fewer than requested if the mass or the capacity does not suffice.
   int run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found, int sites,
           int layers, int level, std::int64_t& reservoir, HeatLedger* heat);
   std::size_t bytes() const;

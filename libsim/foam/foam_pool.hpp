@@ -20,8 +20,8 @@ struct FoamLedger {
 };
 
 /// Limits between the kinds of diffuse particles, as rho / rho_0 of the surrounding water, computed as if
-/// water continued behind walls and in obstacles. Ihmsen et al. use the number of
-/// neighbours, which would depend on the particles' levels here.
+/// water continued behind walls and in obstacles. Ihmsen et al. use the number of neighbours, which would
+/// depend on the particles' levels here.
 struct FoamKinds {
   static constexpr float spray = 0.2f;    ///< below this: spray
   static constexpr float bubble = 0.75f;  ///< above this: bubble

@@ -32,8 +32,8 @@ struct GradientFit {
   /// over all directions.
   SIM_FN float approach() const {
     if (!(weight > 0)) return 0;
-    // `least` is added to the diagonal, because the system is singular in a thin sheet, which has no cells to
-    // fit on either side. G is then 0 across the sheet.
+    // `least` is added to the diagonal: in a sheet one cell thick no water beside the sheet enters the fit,
+    // and the system would be singular. G is 0 across such a sheet.
     const float least = 0.02f / 3 * weight;
     const float xx = diagonal.x + least;
     const float yy = diagonal.y + least;

@@ -62,8 +62,8 @@ struct MomentumAccount {
   Vec3d braked{};     ///< by the speed limit, and by stopping particles that are not finite or far outside
   Vec3d viscosity{};  ///< by the solver's own viscosity (XSPH): 0 except for rounding and for neighbours of
                       ///< unsolved particles
-  /// By the scene's effects, without what obstacles gave: by walls, air, buoyancy, swirl, and the residual of
-  /// the viscosity solver. All other effects give 0 except for rounding.
+  /// By the scene's effects, without the pushes of obstacles: walls, air drag, buoyancy, vorticity
+  /// confinement, and the residual of the viscosity solver. All other effects give 0 except for rounding.
   Vec3d effects{};
   Vec3d inherited{};  ///< velocity changes that unsolved particles inherited (temporal acceleration)
   /// Change by the projections minus the pushes of walls and obstacles. Not 0, because the coarse pressure on

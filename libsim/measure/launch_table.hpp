@@ -39,12 +39,12 @@ struct PassFloor {
   double ms_a_frame = 0;  ///< at the given bandwidth
   double times = 0;       ///< measured time / ms_a_frame
 };
-/// The floor of a pass; none if least_bytes() gives none, or without launches. gb_s: bandwidth of the memory,
-/// reads plus writes, 1e9 bytes per second; above 0.
+/// The least time of a pass at the memory's bandwidth gb_s, reads plus writes, 1e9 bytes per second, above 0.
+/// None if least_bytes() gives none, or without launches.
 std::optional<PassFloor> floor_of(const std::string& label, double launches_a_frame, double ms_a_frame,
                                   const PassWater& water, double gb_s);
 
-/// Sums the launches of several parts of a run; launches for measurements between the parts are left out.
+/// Adds up the launches of several parts of a run. A bench leaves out the parts in which it measures.
 class LaunchSums {
  public:
   void add(const std::vector<sim::LaunchTime>& stretch);

@@ -50,7 +50,7 @@ struct MapCell {
   Knob knob{};
   std::string of;    ///< unit of the number: "s", "projections a substep", "times 30 m/s of the jet"
   double usual = 0;  ///< the case's own number
-  double limit = 0;  ///< the farthest value that passed
+  double limit = 0;  ///< the farthest value that passed; the usual one if none did
   Reach reach = Reach::Found;
   std::string failed;  ///< what failed beyond the limit, or at the usual number
 };

@@ -35,9 +35,9 @@ struct Accuracy {
   }
 };
 
-/// Number of frames from one measurement to the next, for about ten measurements per run. Water is denser in
-/// the frame in which levels change than before the next change, so the interval is chosen to sample all
-/// frames of that period nearly equally.
+/// Number of frames from one measurement to the next, for about ten measurements per run. It has no common
+/// divisor with the period of level changes, so that the measurements fall on all frames of this period
+/// nearly equally often: water is denser in the frame in which levels change than before the next change.
 inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
   const int turn = sim::traits_of(method).adaptive() ? std::max(1, readings.levels_period_frames) : 1;
   int out = std::max(1, frames / 10);

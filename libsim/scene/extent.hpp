@@ -1,5 +1,6 @@
 #pragma once
-/// Rejects scenes that cannot be computed sensibly, before memory is allocated.
+/// Checks of a scene at a given n_*, before memory is allocated: water, substeps, swinging obstacles, tank
+/// and memory.
 
 #include <cstdint>
 #include <optional>

@@ -16,7 +16,7 @@ double volume_m3(const WaterBlock& block);
 inline constexpr const char* gate_of_several = "encloses one block of water, and there are several";
 inline constexpr const char* no_gate = "write gate = false";
 
-/// Resolution that follows from a scene's fixed volume and n_*.
+/// Resolution that follows from the volume V of a scene's water and n_*.
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
   double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for the others
