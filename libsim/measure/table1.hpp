@@ -19,15 +19,14 @@ namespace measure {
 
 /// Options of `vip-bench table1`.
 struct Table1Options : TableOptions {
-  int checkpoints = 0;     ///< number of the scene's checkpoints to use; 0 = all
-  int gazes = 3;           ///< gaze points per checkpoint
-  int repeats = 5;         ///< perturbed starts per gaze point
-  int frames_after = 5;    ///< frames from a checkpoint to the compared picture
-  int cumul_frames = 200;  ///< frames of the comparison frame by frame (film.cpp); 0 = none
-  int film_starts = 1;     ///< number of runs of that comparison; their starts differ by an ulp
-  int projections = 50;    ///< maximum number of constraint projections that relax a start
-  bool unperturbed =
-      false;  ///< no perturbed starts, except from the second film on: HiRes then equals itself
+  int checkpoints = 0;       ///< number of the scene's checkpoints to use; 0 = all
+  int gazes = 3;             ///< gaze points per checkpoint
+  int repeats = 5;           ///< perturbed starts per gaze point
+  int frames_after = 5;      ///< frames from a checkpoint to the compared picture
+  int cumul_frames = 200;    ///< frames of the comparison frame by frame (film.cpp); 0 = none
+  int film_starts = 1;       ///< number of runs of that comparison; their starts differ by an ulp
+  int projections = 50;      ///< maximum number of constraint projections that relax a start
+  bool unperturbed = false;  ///< starts are not perturbed, except from the film's second start on
   base::PictureSize size{1280, 720};
   std::string pictures;                          ///< folder for side-by-side pictures; empty = none
   std::string checkpoints_to, checkpoints_from;  ///< folders to write and read checkpoints; empty = none
