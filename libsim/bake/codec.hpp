@@ -26,7 +26,7 @@ struct BakeFrame {
   std::vector<RenderParticle> foam;  ///< Simulation::read_foam; empty if the bake stores none
   /// Per particle, K above BakeHeader::reference_k; empty if the bake stores none.
   std::vector<float> temperature_k;
-  double temperature_error_k = 0;  ///< upper bound on the error of temperature_k
+  double temperature_error_k = 0;  ///< upper bound on the error of temperature_k, without float rounding
 };
 
 /// A picture, bottom row first as in OpenGL, 4 bytes per pixel (R, G, B, 255).

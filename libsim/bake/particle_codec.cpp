@@ -21,7 +21,7 @@ struct Axis {
   float min = 0, max = 0;
 };
 
-/// Upper bound on the error of a number that is stored with 16 bit over this range.
+/// Upper bound, without float rounding, on the error of a number that is stored with 16 bit over this range.
 double error_of(const Axis& range) {
   return (double(range.max) - double(range.min)) / (2 * double(axis_steps));
 }

@@ -100,8 +100,8 @@ struct RenderCounts {
   std::uint32_t by_thread = 0;       ///< footprints splatted by one invocation
   std::uint32_t by_group = 0;        ///< footprints splatted by one team of invocations
   std::uint32_t by_tiles = 0;        ///< footprints split among many work groups
-  std::uint32_t filter_capped = 0;   ///< pixels whose depth filter was limited by filter_max_px
-  std::uint32_t thickness_full = 0;  ///< thickness pixels that saturated
+  std::uint32_t filter_capped = 0;   ///< pixels at filter_max_px, counted along x and along y
+  std::uint32_t thickness_full = 0;  ///< cells of the thickness grid that saturated
   std::uint32_t front_missing = 0;   ///< fluid pixels without a front particle: 0 unless the driver is faulty
 };
 

@@ -31,8 +31,8 @@ struct GBuffer {
   /// 3 values per pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Where foam
   /// covers the water, random normals are mixed in (shaders/composite.comp).
   std::vector<float> normal;
-  /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed. The path length in water is
-  /// this sum / RenderOptions::packing.
+  /// Sum of the chords of all spheres along the ray of the pixel's thickness cell, m, not smoothed. The path
+  /// length in water is this sum / RenderOptions::packing.
   std::vector<float> thickness;
   std::vector<std::uint32_t> front;  ///< index of the front particle, or no_particle
   std::vector<float> radius;         ///< radius of the front particle, m; 0 without fluid
