@@ -36,7 +36,7 @@ State block(MethodKind method, const Vec3d& low, const Vec3d& high, const Vec3d&
 double mass(const ParticleState& p);
 double mass(const State& state);
 double speed(const ParticleState& p);
-double centre_height(const State& state);   ///< of the centre of mass, m
+double centre_height(const State& state);   ///< height of the centre of mass, m
 double rms_speed(const State& state);       ///< weighted by mass, m/s
 double kinetic_energy(const State& state);  ///< divided by m_*, m2/s2
 /// Height below which this share of the mass is, m.

@@ -28,7 +28,7 @@ struct Shot {
   SheetColumn sheet;
 };
 
-/// HiRes a few frames after a checkpoint: the reference of all comparisons.
+/// Picture and masks of HiRes a few frames after a checkpoint: the reference of all comparisons.
 struct Reference {
   sim::Picture picture;
   Mask fluid;

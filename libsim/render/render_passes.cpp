@@ -14,7 +14,7 @@ namespace sim {
 
 namespace {
 
-constexpr int block_px = 16;        // as in occlusion.glsl
+constexpr int block_px = 16;        // equal to block_px of occlusion.glsl
 constexpr GLuint tile_groups = 64;  // work groups per footprint wider than group_px; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.

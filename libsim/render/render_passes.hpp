@@ -57,9 +57,9 @@ struct FluidRenderer::State {
   GlProgram splat_foam_program;
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
-  std::vector<Obstacle> obstacles;  // of the scene
-  GlBuffer poses;                   // of the obstacles; only if there are any
-  GlBuffer grids;                   // distance grids of the obstacles that are meshes
+  std::vector<Obstacle> obstacles;
+  GlBuffer poses;  // poses of the obstacles; not allocated without obstacles
+  GlBuffer grids;  // distance grids of the obstacles that are meshes
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
@@ -95,7 +95,7 @@ struct FluidRenderer::State {
   void light_floor();
   void shade(std::span<const View> views, unsigned framebuffer);
 
-  GLuint particles_ = 0;  // of the present draw
+  GLuint particles_ = 0;  // GL buffer of the particles of the present draw
   std::int64_t count_ = 0;
 };
 

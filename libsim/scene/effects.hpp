@@ -114,8 +114,8 @@ struct OptionTraits {
 };
 const OptionTraits& traits_of(EffectOption option);
 
-/// The option that limits the levels on which an effect acts: its own, or that of the effect it needs. None
-/// if neither has one.
+/// The option coarsest_level that limits the levels on which an effect acts: of the effect itself or, if it
+/// has none, of the effect that it needs. None if neither effect has the option.
 std::optional<EffectOption> coarsest_level_of(EffectKind kind);
 
 /// One row of the registry.
@@ -152,7 +152,8 @@ struct EffectCoefficients {
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
 /// True if the effect acts on no water of finest_level or coarser, because its coarsest_level is finer than
-/// finest_level. `among`: all effects of the scene; an effect may take its coarsest_level from another one.
+/// finest_level. `among`: all effects of the scene, which include the effect that provides its
+/// coarsest_level.
 bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_level);
 /// The effects that are not idle in water of finest_level and coarser.
 std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level);

@@ -31,12 +31,12 @@ MassProperties mass_properties(const Triangles& mesh);
 
 inline constexpr std::size_t most_grid_nodes = 1 << 21;
 
-/// The body's axes have their origin in its centre of mass and are principal axes, equal to the file's axes
-/// if those are principal.
+/// A closed surface with its mass properties and signed distances, in the body's axes: the principal axes
+/// through the centre of mass, parallel to the file's axes if those are principal.
 class Mesh {
  public:
-  /// spacing_m: that of the grid, which must not have more than most_grid_nodes nodes; 0: the smaller of a
-  /// 48th of the longest side and a quarter of the shortest.
+  /// spacing_m: distance of the grid's nodes, so large that the grid has at most most_grid_nodes nodes
+  /// (unchecked); 0 = the smaller of a 48th of the longest side and a quarter of the shortest.
   Mesh(const Triangles& mesh, double spacing_m);
 
   const std::vector<std::array<double, 3>>& places_m() const { return mesh_.places; }
