@@ -14,7 +14,7 @@ namespace sim {
 
 /// Facts of a frame, stored at the front of its particle chunk and of its picture chunk.
 struct BakeFacts {
-  double time_s = 0;  ///< since the gate opened
+  double time_s = 0;  ///< simulated time since frame 0
   /// Includes a particle count per radius of the file's header. Format 1 stores nothing else of the account.
   FrameAccount account;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Many small steps in one launch: a block of threads that synchronise between the steps.
+/// Runs many small passes in one launch: a block of threads that synchronise between the passes.
 
 #include "libsim/exec/space.hpp"
 

@@ -18,7 +18,7 @@ class GlProgram {
  public:
   GlProgram() = default;
   /// `defines` is inserted after #version 450 core; a line `#include "name"` includes another file of
-  /// shaders/. Errors (base::Error) name the file and contain the driver's log.
+  /// shaders/. base::Error names the file; errors of compiling and linking contain the driver's log.
   GlProgram(std::initializer_list<ShaderFile> files, const std::string& defines = "");
   GlProgram(GlProgram&& other) noexcept;
   GlProgram& operator=(GlProgram&& other) noexcept;

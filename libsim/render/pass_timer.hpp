@@ -16,7 +16,7 @@ class PassTimer {
   PassTimer(const PassTimer&) = delete;
   PassTimer& operator=(const PassTimer&) = delete;
 
-  /// Starts a draw and discards the last one.
+  /// Starts a draw and discards the times of the last draw.
   void start();
   /// Ends a pass that began at the last mark() or start(), and names it. Times of equal names are added.
   void mark(const char* pass);

@@ -74,7 +74,7 @@ struct Obstacle {
 inline constexpr std::size_t most_obstacles = 16;
 const char* shape_name(ObstacleShape shape);
 
-/// Pose of the obstacle at this time since frame 0, s; for a free one, its start.
+/// Pose of the obstacle at this time since frame 0, s; for a free obstacle, its pose at the start.
 Pose pose_at(const Obstacle& obstacle, double time_s);
 /// pose_at() of all obstacles, with velocities of 0.
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
