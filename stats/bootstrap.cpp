@@ -24,8 +24,8 @@ std::vector<double> resample_weights(int n, std::uint64_t seed, std::uint64_t re
   std::uint64_t state = mix(mix(seed + golden) + golden * (resample + 1));
   for (int draw = 0; draw < n; ++draw) {
     state += golden;
-    // Scales the high 32 bits of a random number to an index in [0, n). The bias of an index's probability is
-    // below n / 2^32.
+    // Scales the high 32 bits of a random number to an index in [0, n). Each index's probability differs from
+    // 1/n by less than 2^-32.
     weights[static_cast<std::size_t>((mix(state) >> 32) * static_cast<std::uint64_t>(n) >> 32)] += 1;
   }
   return weights;

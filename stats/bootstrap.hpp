@@ -14,7 +14,7 @@ struct BootstrapOptions {
   int resamples = 2000;
   std::uint64_t seed = 1;
   double confidence = 0.95;  ///< in (0, 1)
-  /// called after each resample with the number of resamples done so far; may be empty
+  /// Called after each resample with the number of resamples done so far; not called if empty.
   std::function<void(int)> progress = {};
 };
 
@@ -28,10 +28,10 @@ std::vector<double> resample_weights(int n, std::uint64_t seed, std::uint64_t re
 /// (std::invalid_argument otherwise).
 double expanded_tail(int n, double confidence);
 
-/// Expanded percentile interval (Hesterberg 2015, section 5.3): quantiles of the resampled estimates at
-/// expanded_tail(n) and 1 - expanded_tail(n). The plain percentile interval is too narrow if the number of
-/// units n is small; the expanded tail corrects this. std::invalid_argument when `estimates` is empty or n <
-/// 2.
+/// Expanded percentile interval (Hesterberg 2015, section 5.3): the quantiles of `estimates` at probabilities
+/// p and 1 - p, p = expanded_tail(n, confidence). n is the number of resampled units. With few units the
+/// plain percentile interval is too narrow; the smaller p widens it. std::invalid_argument when `estimates`
+/// is empty or n < 2.
 std::array<double, 2> expanded_percentile_interval(std::span<const double> estimates, int n,
                                                    double confidence);
 

@@ -11,8 +11,8 @@ namespace stats {
 class Cholesky {
  public:
   /// `matrix` is n x n, row-major; only its lower triangle is read. Returns nothing if a pivot is not finite
-  /// or is at most `least_pivot` times its diagonal element: a column is then a linear combination of the
-  /// others, up to rounding.
+  /// or is at most `least_pivot` times the diagonal element of `matrix` in its row: up to rounding the matrix
+  /// is then not positive definite. std::invalid_argument if the matrix is not square.
   static std::optional<Cholesky> of(std::span<const double> matrix, double least_pivot = 1e-13);
 
   /// Solves A x = b.

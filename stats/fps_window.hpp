@@ -1,6 +1,6 @@
 #pragma once
-/// Mean and standard deviation of the frame rate. The pacer, the records and the solver's tau all use this
-/// definition.
+/// Mean and standard deviation of the frame rate. The frame pacing, the study's records and the solver's
+/// tolerance tau use these functions.
 
 #include <cstddef>
 #include <deque>
@@ -8,16 +8,15 @@
 
 namespace stats {
 
-/// Which mean of the frame rate is mu: the harmonic or the arithmetic one.
+/// The harmonic or the arithmetic mean of the frame rate.
 enum class FpsMean { Harmonic, Arithmetic };
 
 /// Moments of the instantaneous frame rate 1/dt over N frames, in frames per second.
 struct FpsMoments {
   std::size_t frames = 0;
-  double mean = 0;  ///< mu = N / sum(dt): the harmonic mean of 1/dt (paper Table 2: 1000 / mean ms)
+  double mean = 0;             ///< N / sum(dt): the harmonic mean of 1/dt
   double mean_arithmetic = 0;  ///< mean of 1/dt
-  double sd =
-      0;  ///< delta: population standard deviation of 1/dt (divisor N, about the arithmetic mean of 1/dt)
+  double sd = 0;               ///< population standard deviation of 1/dt: divisor N
 
   double mean_of(FpsMean kind) const { return kind == FpsMean::Harmonic ? mean : mean_arithmetic; }
 };
@@ -26,10 +25,10 @@ struct FpsMoments {
 /// an empty span gives zeros.
 FpsMoments fps_moments(std::span<const double> intervals_s);
 
-/// Sliding window over the last frames of a running program, at most `capacity` of them.
+/// Sliding window over the last frames of a running program.
 class FpsWindow {
  public:
-  /// The window holds at most `capacity` frames; capacity >= 1 (std::invalid_argument).
+  /// The window holds at most `capacity` frames. std::invalid_argument if `capacity` is 0.
   explicit FpsWindow(std::size_t capacity = 30);
   /// Adds the newest frame's interval in seconds and drops the oldest one beyond the capacity.
   /// std::invalid_argument unless the interval is positive and finite.

@@ -1,6 +1,6 @@
 #pragma once
-/// GSL's error handling. By default GSL aborts the process on an error. Every file that calls GSL therefore
-/// calls use_gsl_codes() first and checks the return codes.
+/// GSL's error handling. By default GSL aborts the process on an error. After use_gsl_codes() its functions
+/// return error codes or NaN instead.
 
 namespace stats {
 

@@ -40,8 +40,8 @@ class Descent {
   }
 
   /// Takes BFGS steps from the approximation `inverse` of the inverse Hessian (empty: a scaled identity)
-  /// until the decrease predicted for the next step is below `least`. Returns false if no step length lowers
-  /// the value, or after 500 steps.
+  /// until the next full step would lower the value by less than `least` to first order. Returns false if the
+  /// line search fails, or after 500 steps.
   bool bfgs(Vector inverse, double least);
   const Point& at() const { return at_; }
   Minimum newton();
@@ -70,8 +70,8 @@ std::optional<Point> Descent::step(const Vector& direction, double slope, double
   return std::nullopt;
 }
 
-/// BFGS update of the inverse Hessian (Nocedal and Wright 2006, Eq. 6.17). Skipped if the curvature s^T y is
-/// not positive.
+/// BFGS update of the inverse Hessian (Nocedal and Wright 2006, Eq. 6.17). s is the step and y the change of
+/// the gradient. The update is skipped unless the curvature s^T y exceeds 1e-10 |s| |y|.
 void Descent::update_inverse(Vector& inverse, const Vector& s, const Vector& y) const {
   const double curvature = dot(s, y);
   if (!(curvature > 1e-10 * std::sqrt(dot(s, s) * dot(y, y)))) return;

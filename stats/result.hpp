@@ -1,5 +1,6 @@
 #pragma once
-/// A value, or the reason why it is undefined. The statistics return this instead of NaN.
+/// A value, or the reason why it is undefined. Tests and estimates return a Result where they may be
+/// undefined.
 
 #include <stdexcept>
 #include <string>

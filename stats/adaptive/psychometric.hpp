@@ -10,13 +10,14 @@ namespace stats {
 /// Rising curves between a guess rate and 1 - lapse rate. All have the form
 /// P(x) = guess + (1 - guess - lapse) F(x).
 enum class PsychometricForm {
-  Normal,      ///< F = Phi((x - threshold) / spread): the threshold is the median of F, `shape` the spread
+  Normal,      ///< F = Phi((x - threshold) / shape), with the standard normal distribution function Phi
   Logistic,    ///< F = 1 / (1 + exp(-(x - threshold) / shape))
   Weibull,     ///< F = 1 - exp(-(x / threshold)^shape) for x > 0, else 0
   WeibullLog,  ///< as Weibull, for x in decibels: (x / threshold) is 10^((x - threshold) / 20)
 };
 
-/// Word of a form in protocols, and back: "normal", "logistic", "weibull", "weibull_db".
+/// The word of a form in protocols: "normal", "logistic", "weibull", "weibull_db". psychometric_form()
+/// returns the form of a word; refused: any other word.
 const char* psychometric_word(PsychometricForm form);
 Result<PsychometricForm> psychometric_form(std::string_view word);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double equal_entropies = 1e-15;
 
-/// -sum w/W ln(w/W) for weights of sum W; 0 for W = 0.
+/// Entropy in nats of weights w whose sum is W: -sum (w/W) ln(w/W); 0 if W is 0.
 double entropy_of(std::span<const double> weights, double sum) {
   if (!(sum > 0)) return 0;
   double h = 0;
@@ -117,8 +117,8 @@ GridEstimate grid_estimate(std::span<const double> values, std::span<const doubl
   for (std::size_t i = 0; i < x.size(); ++i) out.mean += x[i] * w[i] / sum;
   for (std::size_t i = 0; i < x.size(); ++i) out.sd += (x[i] - out.mean) * (x[i] - out.mean) * w[i] / sum;
   out.sd = std::sqrt(out.sd);
-  // Ends of the intervals that the values represent, halfway between neighbours. The first and the last
-  // interval extend equally far to both sides of their value.
+  // Ends of the ranges that the values represent, half-way between neighbours. The first and the last range
+  // extend equally far to both sides of their value.
   std::vector<double> edge(x.size() + 1, x.front());
   for (std::size_t i = 1; i < x.size(); ++i) edge[i] = (x[i - 1] + x[i]) / 2;
   if (x.size() > 1) edge.front() = 2 * x.front() - edge[1];

@@ -1,5 +1,6 @@
 #pragma once
-/// QUEST+ (Watson 2017): chooses each stimulus so that the expected entropy of the parameters is least.
+/// QUEST+ (Watson 2017): chooses each stimulus so that the expected entropy of the parameters' posterior is
+/// least.
 
 #include <cstddef>
 #include <functional>
@@ -9,15 +10,17 @@
 namespace stats {
 
 /// A discrete Bayesian estimate of a model's parameters. Stimuli, parameters and outcomes are indices into
-/// grids of the caller, of any number of dimensions. One choice costs stimuli x parameters x outcomes.
+/// grids of the caller, of any number of dimensions. The time of one choice is proportional to stimuli x
+/// parameter points x outcomes.
 class QuestPlus {
  public:
-  /// `likelihood(s, p, o)` is the probability of outcome o for stimulus s under parameters p; over o it sums
-  /// to 1. `prior` has one weight of 0 or more for each parameter point; the sum need not be 1. `interest`
-  /// gives each parameter point the index of its marginal cell: the points of a cell share the values of the
-  /// parameters of interest. The entropy is that of the cells, so the other parameters do not steer the
-  /// choice (Prins 2013). Empty: each point is a cell. std::invalid_argument: no stimulus or outcome, no
-  /// positive weight, a probability outside [0, 1], or a wrong length of `interest`.
+  /// `likelihood(s, p, o)` is the probability of outcome o for stimulus s under parameters p; the
+  /// probabilities of all o must sum to 1. `prior` has one weight of 0 or more for each parameter point; the
+  /// sum need not be 1. `interest` gives each parameter point the index of its marginal cell: the points of a
+  /// cell share the values of the parameters of interest. The entropy is computed over the cells, so that
+  /// nuisance parameters do not affect the choice (Prins 2013). With an empty `interest` each point is its
+  /// own cell. std::invalid_argument: no stimulus or outcome, a negative weight or none above 0, a
+  /// probability outside [0, 1], or an `interest` of wrong length or with a negative index.
   QuestPlus(int stimuli, int outcomes, std::span<const double> prior,
             const std::function<double(int, int, int)>& likelihood, std::span<const int> interest = {});
 
@@ -47,7 +50,7 @@ class QuestPlus {
 
   int stimuli_, outcomes_;
   std::vector<double> posterior_;
-  std::vector<double> likelihood_;  ///< stimulus, outcome, parameter point; the last runs fastest
+  std::vector<double> likelihood_;  ///< [stimulus][outcome][parameter point]
   std::vector<int> interest_;       ///< marginal cell of each parameter point
   int cells_ = 0;                   ///< number of marginal cells
 };
@@ -59,8 +62,8 @@ struct GridEstimate {
 };
 
 /// `values[p]` is the parameter's value at point p, `weights` the posterior. Each distinct value represents
-/// the interval that reaches half-way to its neighbours; within it the probability is spread evenly, so the
-/// interval's ends are not bound to grid values. std::invalid_argument: unequal lengths or no value.
+/// the range that reaches half-way to its neighbours. The probability is uniform within a range, so `low` and
+/// `high` need not be grid values. std::invalid_argument: unequal lengths or no value.
 GridEstimate grid_estimate(std::span<const double> values, std::span<const double> weights,
                            double confidence = 0.95);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Staircases: each stimulus follows from the one before and from the response to it.
+/// Staircases: each stimulus is computed from the previous stimuli and the responses to them.
 
 #include <optional>
 #include <span>
@@ -7,20 +7,21 @@
 
 namespace stats {
 
-/// A track over a line of stimulus values. A "positive" response (detected, correct) moves the track down,
-/// the other one up.
+/// Rules of a track, the sequence of stimulus values. Positive responses (detected, correct) move the track
+/// down, negative ones move it up.
 struct StaircaseRules {
   double start = 0;
   double lowest = 0, highest = 0;  ///< the track stays within these values
   /// Transformed up-down rule (Levitt 1971): this many positive responses in a row move the track one step
-  /// down, this many negative ones in a row one step up. 2 and 1 lead to the stimulus with 70.7 % positive
-  /// responses, 3 and 1 to 79.4 %, 1 and 1 to 50 %.
+  /// down, this many negative ones in a row one step up. The values 2 and 1 converge to the stimulus with
+  /// 70.7 % positive responses, 3 and 1 to 79.4 %, 1 and 1 to 50 %.
   int down_after = 1, up_after = 1;
   /// steps[r] is the size of a step after r reversals; the last size holds for all further reversals. Not
   /// empty, each above 0.
   std::vector<double> steps{1};
-  /// Size of an upward step relative to a downward one. Under down_after = up_after = 1 the weighted rule
-  /// (Kaernbach 1991) leads to the stimulus with the share up/(1 + up) of positive responses: 3 to 75 %.
+  /// Size of an upward step relative to a downward one, above 0. With down_after = up_after = 1 this is the
+  /// weighted rule (Kaernbach 1991): the track converges to the stimulus whose share of positive responses is
+  /// up_ratio / (1 + up_ratio), which is 75 % for 3.
   double up_ratio = 1;
   /// True: the steps multiply the stimulus by 10^(step / 20), so steps are in decibels.
   bool decibels = false;
@@ -32,9 +33,9 @@ struct StaircaseRules {
   int reversals = 0;  ///< least number of reversals
 };
 
-/// The share of positive responses to which the rules lead for a smooth psychometric function.
-/// Levitt: p^down_after = 1/2 for up_after = 1; Kaernbach: up_ratio / (1 + up_ratio). None for other
-/// combinations.
+/// The share of positive responses to which the track converges for a smooth psychometric function:
+/// 0.5^(1/down_after) for up_after = up_ratio = 1 (Levitt 1971); up_ratio / (1 + up_ratio) for down_after =
+/// up_after = 1 (Kaernbach 1991). Empty for other rules.
 std::optional<double> target_share(const StaircaseRules& rules);
 
 /// State of a track, rebuilt from its responses.
@@ -48,8 +49,9 @@ struct StaircaseTrack {
 /// same stimuli. std::invalid_argument for rules that are out of range.
 StaircaseTrack replay_staircase(const StaircaseRules& rules, std::span<const bool> positive);
 
-/// Mean of the stimuli at the reversals after the first `skip`; of an odd number of these, the first is left
-/// out too (Levitt 1971: an even number). None if fewer than two remain. Under `decibels` the geometric mean.
+/// Mean of the stimuli at the reversals after the first `skip`; the geometric mean under `decibels`. If the
+/// number of these reversals is odd, the first of them is left out too, because Levitt (1971) averages an
+/// even number. Empty if fewer than two are left.
 std::optional<double> reversal_mean(const StaircaseRules& rules, const StaircaseTrack& track, int skip);
 
 }  // namespace stats

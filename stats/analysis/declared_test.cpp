@@ -117,7 +117,8 @@ Result<TestOutcome> run_equivalence(const DeclaredTest& test, std::span<const Ex
   return out;
 }
 
-/// p of the side that `alternative` names. Without an exact p, half of the normal p or its complement.
+/// p for the alternative. A one-sided p is exact if there is one, else it is p_normal / 2 on the side of the
+/// larger rank sum and 1 - p_normal / 2 on the other side.
 double signed_rank_p(const SignedRank& test, Alternative alternative) {
   if (alternative == Alternative::TwoSided) return test.p();
   const bool greater = alternative == Alternative::Greater;
@@ -182,7 +183,8 @@ double side_p(double statistic, double two_sided, Alternative alternative) {
   return right_side ? two_sided / 2 : 1 - two_sided / 2;
 }
 
-/// Widens the confidence of a two-sided interval so that one end alone has the confidence of the test.
+/// Confidence of the two-sided interval. For a one-sided test it is lower, so that each end alone is a
+/// one-sided bound with the confidence of the test.
 double interval_confidence(const DeclaredTest& test) {
   return test.alternative == Alternative::TwoSided ? test.confidence : 2 * test.confidence - 1;
 }
@@ -202,7 +204,6 @@ void count_people(TestOutcome& out, const AnswerRows& rows) {
   out.n_b = static_cast<int>(people[1].size());
 }
 
-/// Indicator of condition a.
 Predictor of_a(const AnswerRows& rows) {
   Predictor out{"a", {}};
   for (const int condition : rows.condition) out.values.push_back(condition == 0 ? 1 : 0);

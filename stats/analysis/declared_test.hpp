@@ -29,7 +29,7 @@ enum class TestKind {
 /// "clmm".
 const char* test_word(TestKind kind);
 const std::vector<std::string>& test_words();
-/// The kind of a word of test_words().
+/// The kind of a word of test_words(); std::invalid_argument for any other word.
 TestKind test_of(const std::string& word);
 /// The name of the test for display, such as "paired t test".
 const char* test_name(TestKind kind);
@@ -39,7 +39,8 @@ bool of_groups(TestKind kind);
 /// True if the test is a model of all single answers.
 bool of_answers(TestKind kind);
 
-/// Word of a side, and back: "two-sided", "less", "greater".
+/// The word of a side: "two-sided", "less", "greater". alternative_of() returns the side of a word;
+/// std::invalid_argument for any other word.
 const char* alternative_word(Alternative alternative);
 Alternative alternative_of(const std::string& word);
 
@@ -47,10 +48,12 @@ Alternative alternative_of(const std::string& word);
 struct DeclaredTest {
   TestKind kind = TestKind::PairedT;
   Alternative alternative = Alternative::TwoSided;
-  /// Tost: the difference lies within -+ this. A one-sided t test: the difference is above -margin (Greater)
-  /// or below margin (Less), that is, not inferior. In the unit of the outcome, above 0.
+  /// Tost: the hypothesis is that the difference lies between -margin and margin. A one-sided t test: the
+  /// hypothesis of non-inferiority, that the difference is above -margin (Greater) or below margin (Less).
+  /// The margin has the unit of the outcome and is above 0.
   std::optional<double> margin = {};
-  double confidence = 0.95;  ///< confidence of intervals; for Tost the interval has 2 confidence - 1
+  double confidence = 0.95;  ///< confidence of intervals; the interval of Tost has the confidence 2 *
+                             ///< confidence - 1
 };
 
 /// Result of a declared test. The estimate is that of a - b.
@@ -62,7 +65,7 @@ struct TestOutcome {
   std::string estimated;  ///< "mean difference", "Hodges-Lehmann shift", "share above", "log odds ratio"
   double estimate = 0;
   std::optional<std::array<double, 2>> ci = {};  ///< interval of the estimate; an end may be infinite
-  std::string effect = {};                       ///< name of the effect size; empty: none
+  std::string effect = {};                       ///< name of the effect size; empty if the test has none
   std::optional<double> effect_size = {};
   std::optional<std::array<double, 2>> effect_ci = {};
   int n_a = 0, n_b = 0;  ///< participants used; equal for tests of differences
@@ -74,7 +77,7 @@ struct TestOutcome {
 /// comparison with a constant, every value of `b` is the constant. of_groups(): a and b are different
 /// participants. Sums are NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths
 /// of paired values, a margin that is not above 0, a margin with any test but Tost and one-sided t tests, and
-/// Tost without a margin or with a side. Refused where the test itself is.
+/// Tost without a margin or with a side. Refused where the test is undefined for the data.
 Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const ExactMean> a,
                                  std::span<const ExactMean> b);
 
@@ -88,7 +91,7 @@ struct AnswerRows {
 
 /// Fits the model of the test (of_answers()) and tests a against b. Random effects: the participant, and for
 /// LinearMixed the participant with the condition. std::invalid_argument for another kind or a margin.
-/// Refused where the fit is.
+/// Refused where the model cannot be fitted.
 Result<TestOutcome> run_declared(const DeclaredTest& test, const AnswerRows& rows);
 
 }  // namespace stats

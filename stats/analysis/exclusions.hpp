@@ -1,6 +1,6 @@
 #pragma once
-/// Exclusions by rules fixed beforehand. The rules do not read the method, scene or n_* (size of the water)
-/// of a trial, so they cannot depend on the differences that the study tests.
+/// Exclusions by rules fixed beforehand. The rules do not read the method, scene or n_* (nominal number of
+/// particles) of a trial, so they cannot depend on the differences that the study tests.
 
 #include <limits>
 #include <span>
@@ -25,12 +25,12 @@ struct TrialRecord {
   std::string timing_reason;    ///< why the verdict is not Pass
   bool interrupted = false;     ///< excluded by the protocol's interruption policy
   std::string by_experimenter;  ///< the experimenter's reason; empty: not excluded by hand
-  double answer = unanswered;   ///< main rating, or 1 / 2 for the interval chosen
+  double answer = unanswered;   ///< main rating; for a pair, 1 or 2: the interval chosen
   int answers = 0;              ///< questions answered in this trial
   int repeats = -1;             ///< position of the original trial that this one repeats; -1: not a repeat
 };
 
-/// One answered catch page.
+/// One answered catch page, which checks the participant's attention.
 struct CatchRecord {
   std::string participant;
   int visit = 1;
@@ -44,7 +44,8 @@ struct Exclusion {
   std::string rule;    ///< "experimenter", "interruption", "timing", "catch", "repeat", "straight_lining" or
                        ///< "incomplete"
   std::string reason;  ///< the reason in words, with the numbers that triggered the rule
-  /// Number of answers excluded; for a whole visit without those of its trials that are listed separately.
+  /// Number of answers excluded. For a whole visit, answers of its trials that the list excludes one by one
+  /// are not counted again.
   int answers = 0;
 
   bool by_hand() const { return rule == "experimenter"; }

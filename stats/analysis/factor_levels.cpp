@@ -37,7 +37,7 @@ LevelPreference prefer(std::span<const PairChoice> choices, std::span<const Fact
   LevelPreference out;
   out.a = a;
   out.b = b;
-  std::map<int, std::pair<int, int>> people;  // by participant: choices of a, answers
+  std::map<int, std::pair<int, int>> people;  // key: participant; value: choices of a, answers
   for (const PairChoice& choice : choices) {
     const FactorPlace& first = places[static_cast<std::size_t>(choice.first)];
     const FactorPlace& second = places[static_cast<std::size_t>(choice.second)];

@@ -15,8 +15,8 @@
 
 namespace stats {
 
-/// Position of a treatment in a factorial design (tables and choices call a treatment a method): its level of
-/// the factor, and the index of its combination of all other factors.
+/// Position of a treatment in a factorial design: its level of the factor, and the index of its combination
+/// of all other factors. ScoreTable and PairChoice call a treatment a method.
 struct FactorPlace {
   int level = 0, rest = 0;
 };
@@ -28,14 +28,14 @@ struct LevelPreference {
   int participants = 0;
   /// t test of each participant's share of choices of a against one half.
   Result<OneSampleTTest> shares = Refusal{"not computed"};
-  /// Set if all shares are equal: the exact test that replaces the t test.
+  /// Set if all shares are equal, which leaves no t: the exact sign test that replaces the t test.
   std::optional<Unanimous> all_alike;
   std::optional<double> p_holm;  ///< p after Holm over the pairs of levels of the factor
 
   std::optional<double> p() const;
 };
 
-/// Task 1: mean score of level a minus that of level b at one n_*.
+/// Task 1: mean score of level a minus that of level b at one n_* (nominal number of particles).
 struct LevelDifference {
   int n_star = 0, a = 0, b = 0;
   std::size_t participants = 0;  ///< participants who judged all treatments of both levels

@@ -27,7 +27,7 @@ struct ScoreDifference {
   double p(Alternative side, double null = 0) const;
 };
 
-/// The data of one test.
+/// One test of Task 1 before its p is computed.
 struct ScoreContrast {
   HypothesisTest test;  ///< label, methods and n; its reason says why `difference` could not be computed
   std::optional<ScoreDifference> difference;
@@ -36,8 +36,8 @@ struct ScoreContrast {
   double margin = 0;
 };
 
-/// Takes the difference from a paired t test. Omits the intervals of effect sizes, which would take most of
-/// the time: power simulations call this function often.
+/// Computes the difference by a paired t test, without the intervals of effect sizes: they would take most of
+/// the time, and power simulations call this function often.
 void take_pairs(ScoreContrast& contrast, const ScoreTable& table, int n_star, int a, int b) {
   HypothesisTest& test = contrast.test;
   const auto pairs = complete_pairs(table.column(n_star, a), table.column(n_star, b));
@@ -63,8 +63,8 @@ void take_model(ScoreContrast& contrast, const Result<MixedScores>& model, int n
   if (difference) contrast.difference = {difference->estimate, difference->se, difference->df};
 }
 
-/// The exact sign test, for differences that are all equal and so have no t. `p` is the p-value of the sign
-/// test.
+/// The exact sign test with the p-value `p`, for differences that are all equal and so have no t. `right`:
+/// the estimate lies in the claimed direction.
 FamilyTest sign_test(const ScoreContrast& contrast, double p, bool right = true) {
   FamilyTest out{contrast.test, right};
   out.test.method = "exact sign test";
@@ -82,7 +82,7 @@ Alternative better_side(const ScoreContrast& contrast) {
   return contrast.higher_is_better ? Alternative::Greater : Alternative::Less;
 }
 
-/// The level of one side: alpha for a one-sided hypothesis, half of it for a two-sided one.
+/// The level of each one-sided test: alpha for a one-sided hypothesis, half of alpha for a two-sided one.
 double level_of(const Family& family) {
   return family.out.one_sided ? family.plan.alpha : 0.5 * family.plan.alpha;
 }
@@ -94,7 +94,8 @@ void set_interval(ScoreContrast& contrast, double confidence) {
   contrast.test.ci_confidence = confidence;
 }
 
-/// Decides by the uncorrected two-sided p, as the paper does. The mixed model has no such p.
+/// Sets paper_holds from the uncorrected two-sided p of the paired test, as the paper does; false in the
+/// mixed model, which has no such p.
 void set_paper(ScoreContrast& contrast, const Family& family) {
   HypothesisTest& test = contrast.test;
   test.paper_holds =
@@ -105,7 +106,7 @@ void set_paper(ScoreContrast& contrast, const Family& family) {
 double ScoreDifference::p(Alternative side, double null) const { return student_p(t(null), df, side); }
 
 /// The contrast of methods a and b at one n_*, with the margin of the claim or the table. `model` is the
-/// mixed model of all answers of the table; null means a paired test.
+/// mixed model of all answers of the table; null for a paired test.
 ScoreContrast score_contrast(const MethodClaim& claim, const ScoreTable& table,
                              const Result<MixedScores>* model, int n_star, const std::string& a,
                              const std::string& b) {
@@ -200,11 +201,10 @@ FamilyTest non_inferiority(ScoreContrast contrast, const Family& family) {
   return {test, one_sided || is_better(contrast, d.estimate - worst)};
 }
 
-/// The data for the tests.
 struct Scores {
   const AnalysisPlan& plan;
   const ScoreTable &realism, &sickness;
-  /// Models of both scores, if the plan uses the mixed model; else empty.
+  /// Mixed models of realism and of sickness, in this order; empty if the plan uses paired tests.
   std::vector<Result<MixedScores>> models;
 };
 
@@ -214,7 +214,7 @@ Scores scores_of(const ScoreTable& realism, const ScoreTable& sickness, const An
   return out;
 }
 
-/// The tests' name in a rule, as "paired t tests".
+/// Name of the tests in the text of a decision rule.
 std::string tests_of(const Scores& scores) {
   return scores.plan.tests == ScoreTests::Mixed ? "t tests of the mixed model" : "paired t tests";
 }
@@ -226,7 +226,7 @@ FamilyTest test_of(ScoreContrast contrast, const Family& family) {
     case HypothesisKind::NonInferiority:
       return non_inferiority(std::move(contrast), family);
     case HypothesisKind::Superiority:
-    case HypothesisKind::Preference:  // occurs only in Task 2
+    case HypothesisKind::Preference:  // does not occur in Task 1
       break;
   }
   return superiority(std::move(contrast), family);

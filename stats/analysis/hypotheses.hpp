@@ -1,7 +1,7 @@
 #pragma once
-/// Confirmatory tests of hypotheses about methods. Each claim has its own family of tests, decided by the
-/// plan's rule. Each result also gives the verdict of the procedure of the claim's paper, without correction,
-/// on the same data.
+/// Confirmatory tests of hypotheses about methods. Each claim has its own family of tests, and the plan's
+/// rule decides on it. Each result also contains the verdict that the paper's own procedure, without
+/// correction for multiple tests, gives on the same data.
 
 #include <array>
 #include <optional>
@@ -37,7 +37,7 @@ struct HypothesisTest {
   std::optional<std::array<double, 2>> ci;
   double ci_confidence = 0.95;
   std::optional<double> margin;
-  /// Task 1: the t statistic that p belongs to (of two one-sided tests the one nearer to zero), and the
+  /// Task 1: the t statistic that p belongs to (of two one-sided tests, that with the larger p), and the
   /// paired effect size, which is empty for the mixed model.
   std::optional<double> t, df, d_z;
   std::optional<double> se;  ///< standard error of the estimate
@@ -49,16 +49,17 @@ struct HypothesisTest {
   std::string reason;             ///< why there is no p, which then counts as 1 in the family
   std::optional<double> paper_p;  ///< p of the paper's procedure: two-sided, uncorrected
   bool paper_holds = false;
-  /// For a preference: p of the two-sided test after Holm over the five pairs of the paper's Fig. 10, and
-  /// over all ten pairs. The result depends on the choice of the family, so both are shown.
+  /// For claims of Task 2 with MethodClaim::larger_families: p of the two-sided test after Holm over the
+  /// pairs that the claims of Task 2 compare (five in the paper's Fig. 10), and over all pairs (ten with five
+  /// methods).
   std::optional<double> p_holm_of_five, p_holm_of_ten;
-  /// Shift of missing answers that would change `holds`; see add_tipping_points.
+  /// Shift of missing answers that would change `holds`; set by add_tipping_points().
   std::optional<Result<TippingPoint>> tipping;
 };
 
-/// The verdict of the paired tests when the plan decides by the mixed model.
+/// The verdict of the paired tests, reported when the plan decides by the mixed model.
 struct PairedVerdict {
-  /// Status that the tests give, even if the study cannot test the hypothesis.
+  /// Status from the tests alone, even if the status of the hypothesis is NotTestable.
   HypothesisStatus status = HypothesisStatus::NoData;
   int confirmed = 0;
   std::vector<HypothesisTest> tests;
@@ -92,16 +93,16 @@ struct Hypothesis {
 /// Tests the claims of Task 1 within each n_*. The plan chooses paired t tests over participants or the mixed
 /// model of each score; with the mixed model the paired tests are reported too. The plan also chooses
 /// one-sided or two-sided tests. In the two-sided case p of equivalence is twice the larger one-sided p, p of
-/// non-inferiority is the two-sided p against its margin, and both give the interval of 1 - alpha.
+/// non-inferiority is the two-sided p against its margin, and all intervals have the confidence 1 - alpha.
 /// `untestable`: why claims that need gaze cannot be tested; empty if they can. The paper's rule is always
 /// applied to the paired tests.
 std::vector<Hypothesis> task1_hypotheses(std::span<const MethodClaim> claims, const ScoreTable& realism,
                                          const ScoreTable& sickness, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
-/// Tipping points of the tests of Task 1: by how many points missing answers must be worse before the
-/// plan's decision on the test (`holds`) changes, if the other tests and the standard error of this test stay
-/// as they are. `tables` must include those that the tests were computed from.
+/// Tipping points of the tests of Task 1: by how many points missing answers must be worse before the plan's
+/// decision on the test (`holds`) changes, if the other tests and the standard error of this test stay as
+/// they are. Tests of a score that no table of `tables` has are skipped.
 void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
 /// Tests the claims of Task 2 by exact binomial tests, or by share_test if PairPreference::shares is set.

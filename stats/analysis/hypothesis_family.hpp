@@ -13,8 +13,8 @@ namespace stats {
 
 struct FamilyTest {
   HypothesisTest test;
-  /// True if the estimate lies in the claimed direction. Always true for tests of equivalence and one-sided
-  /// tests of superiority and non-inferiority, which include the direction.
+  /// True if the estimate lies in the claimed direction. Always true in Task 1 for equivalence, which has no
+  /// direction, and for one-sided tests, whose p includes the direction.
   bool right = true;
 };
 
@@ -22,7 +22,8 @@ struct Family {
   const MethodClaim& claim;
   const AnalysisPlan& plan;
   std::string untestable;  ///< why the hypothesis cannot be tested; empty if it can
-  Hypothesis out;          ///< begin_family() and the caller set text and rules; finish() sets the rest
+  Hypothesis out;          ///< begin_family() sets the claim's texts and the plan's settings, the caller sets
+                           ///< `rule`, finish() sets all other fields
   std::vector<FamilyTest> tests;
 };
 
@@ -34,15 +35,15 @@ Family begin_family(const MethodClaim& claim, const AnalysisPlan& plan, const st
 bool confirmed_as_in_paper(const MethodClaim& claim, bool significant, bool right);
 
 /// Parts of a decision rule in words, as in "paired t tests, two-sided, all significant and in the direction
-/// of better": the test when one-sided and when two-sided, and the side that a two-sided result must lie on
-/// (empty: none).
+/// of better": the name of a one-sided and of a two-sided test, and the side on which a two-sided result must
+/// lie (empty: no side).
 struct RuleWords {
   std::string one_sided, two_sided, claim;
 };
 std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std::size_t tests);
 
-/// Corrects by Holm over the planned family (a test without p counts as 1), then sets decisions and
-/// sentences.
+/// Corrects by Holm over the planned family (a test without p counts as 1), then sets the verdict and its
+/// texts.
 Hypothesis finish(Family family);
 
 /// p of each pair after Holm over the pairs for which `chosen` is true; empty for other pairs and for refused

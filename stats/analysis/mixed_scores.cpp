@@ -11,7 +11,7 @@ std::string cell_name(int n_star, int method) {
   return "n_star" + std::to_string(n_star) + ":method" + std::to_string(method);
 }
 
-/// Adds one column for each n_* and method that was judged.
+/// Adds an indicator column for each combination of n_* and method that was judged.
 void add_cells(std::vector<Predictor>& terms, const std::vector<MethodScore>& answers) {
   std::set<std::pair<int, int>> cells;
   for (const auto& answer : answers) cells.insert({answer.n_star, answer.method});
@@ -23,7 +23,7 @@ void add_cells(std::vector<Predictor>& terms, const std::vector<MethodScore>& an
   }
 }
 
-/// Adds indicators of a factor's levels against its first level.
+/// Adds indicators of a factor's levels against its lowest level.
 void add_factor(std::vector<Predictor>& terms, const std::string& name,
                 const std::vector<MethodScore>& answers, int MethodScore::*factor) {
   std::vector<double> groups;

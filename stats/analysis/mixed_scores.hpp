@@ -1,8 +1,8 @@
 #pragma once
-/// A linear mixed model of all answers of one score, reported with the paired tests. Paired tests drop
-/// participants who lack one of the two methods. The mixed model assumes that missing answers depend only on
-/// the answers given and the model's terms (missing at random); tipping.hpp treats missing answers that
-/// depend on their own value.
+/// A linear mixed model of all answers of one score, reported beside the paired tests, which drop
+/// participants without answers to one of the two methods. The mixed model assumes that missing answers
+/// depend only on the answers given and the model's terms (missing at random); tipping.hpp treats missing
+/// answers that depend on their own value.
 
 #include <span>
 #include <string>
@@ -19,8 +19,9 @@ namespace stats {
 /// is, if the order mixes blocks.
 std::vector<int> periods_of(std::span<const int> blocks);
 
-/// Terms: each n_* with each method, scenes and periods (each against the first), and the trial's position
-/// (linear). Random effects: the participant, and the participant with each method.
+/// Fixed terms: each combination of n_* (nominal number of particles) and method, scenes and periods (each
+/// against the first), and the trial's position (linear). Random effects: the participant, and the
+/// participant with each method.
 struct MixedScores {
   LinearMixedFit fit;
 

@@ -14,10 +14,10 @@
 
 namespace stats {
 
-/// Effect of a method relative to the reference method; larger = higher answers.
+/// Effect of a method relative to the reference method; above 0: higher answers.
 struct MethodEffect {
   int method = 0;
-  double estimate = 0, se = 0;  ///< logits
+  double estimate = 0, se = 0;  ///< log odds ratio, method against reference
   std::array<double, 2> ci{};   ///< Wald interval
   double z = 0, p = 0;
   /// Corrected over all methods of the study but the reference, at this n_*; a method without answers counts
@@ -29,9 +29,9 @@ struct OrdinalEffects {
   MixedOrdinalFit fit;
   int reference = 0;
   std::vector<MethodEffect> effects;  ///< one effect for each method with answers except the reference
-  /// Likelihood-ratio test against the same model without methods, from the maximised likelihoods (for a
-  /// penalised fit as in Heinze and Schemper 2002, Stat. Med. 21, 2409-2419). Refused if that model cannot be
-  /// fitted.
+  /// Likelihood-ratio test against the same model without methods, from the maximised objectives; a penalised
+  /// fit is compared by its penalised likelihood (Heinze and Schemper 2002, Stat. Med. 21, 2409-2419).
+  /// Refused if that model cannot be fitted.
   Result<LikelihoodRatio> overall = Refusal{"not computed"};
 };
 

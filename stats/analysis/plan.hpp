@@ -1,6 +1,6 @@
 #pragma once
 /// The analysis plan, fixed before the data are seen: margins, alpha, exclusion rules, seed. Preregistration
-/// freezes the plan.
+/// stores it in a bundle.
 
 #include <cstdint>
 #include <map>
@@ -14,17 +14,17 @@
 
 namespace stats {
 
-/// Which trials to exclude by timing verdict (for a pair, the worse of two). Degraded trials are included by
-/// default: their realised timing is known and close to the requested one.
+/// Which trials to exclude by their timing verdict (for a pair, the worse of two): none, those that failed,
+/// or also the degraded ones. Degraded trials are included by default, because their realised timing is known
+/// and close to the requested one.
 enum class TimingRule { None, Fail, Degraded };
 
 /// How to test a pair that a participant answered more than once. The binomial test assumes independent
-/// answers; several answers of one person are dependent (pooling blocks gave 9.6 % false alarms at a level of
-/// 5 %).
+/// answers; several answers of one person are dependent, and the test then rejects too often.
 enum class RepeatedPairs {
   Refuse,
   Warn,   ///< run the binomial test with a warning
-  Share,  ///< test each person's share over people (share_test() of task2.hpp)
+  Share,  ///< test the people's shares of choices (share_test() of task2.hpp)
   First   ///< use only each person's first answer
 };
 
@@ -34,11 +34,11 @@ struct ExclusionRules {
   /// with answered catch pages.
   std::optional<double> min_catch_correct = 0.5;
   /// Largest mean |difference| between a repeated showing and its original, points of the main rating; empty:
-  /// no such rule. On seven points random answers differ by 2.3 on average, so 3 excludes only answers that
-  /// are worse than random.
+  /// no such rule. On seven points random answers differ by 2.3 on average, so 3 excludes only visits whose
+  /// repeats differ more than random answers do.
   std::optional<double> max_repeat_difference = 3.0;
   /// Smallest share of repeated pairs answered alike, in [0, 1]. Empty by default: there is no such rule,
-  /// since one repeated pair is too few to judge a person by.
+  /// since a person who answers one or two repeated pairs cannot be judged by them.
   std::optional<double> min_repeat_agreement;
   /// Excludes a visit with the same answer to every trial (main rating or chosen interval), if it has at
   /// least this many answers; 0: no such rule. Off by default: a person who sees no difference also gives
@@ -62,7 +62,7 @@ enum class ScoreTests {
   Mixed,   ///< t tests of the mixed model of all answers (mixed_scores.hpp)
 };
 
-/// Which hypotheses are tested one-sided. Every hypothesis claims a direction.
+/// Which hypotheses are tested one-sided.
 enum class Directional {
   None,  ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
   All,   ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
@@ -96,12 +96,13 @@ struct MethodClaim {
   HypothesisKind kind = HypothesisKind::Superiority;
   std::vector<std::string> scores;  ///< Task 1: "realism", "sickness"
   std::vector<std::string> a, b;    ///< methods; each of `a` is compared with each of `b`
-  /// Task 1: margin by score, in points; empty: those of the plan.
+  /// Task 1: margin by score, in points. A score without an entry has the plan's margin.
   std::map<std::string, double> margins = {};
   bool needs_gaze = false;       ///< not testable unless gaze was tracked
   bool once_one_sided = false;   ///< tested one-sided under Directional::Once
   bool larger_families = false;  ///< Task 2: p is also given after Holm over larger families of pairs
-  std::string called = {};       ///< Task 2: name of the methods `a` in the printed rule; empty: their own
+  std::string called = {};       ///< Task 2: words for the methods `a` in the printed rule; empty: their
+                                 ///< names
   std::optional<Paper> paper = {};
 };
 
@@ -115,11 +116,11 @@ struct DeclaredHypothesis {
   std::string outcome;          ///< id of a question, or threshold_outcome
   std::vector<Levels> compare;  ///< a and b; one entry: a is compared with `against`
   std::optional<double> against = {};
-  /// Choices: the score whose share of the answers is the outcome. Empty: the higher of two scores, or in
-  /// pairs the choice of the comparison.
+  /// Questions with labelled choices: the score whose share of the answers is the outcome. Empty: the higher
+  /// one if there are two choices. Must be empty if the outcome is not a share.
   std::optional<int> positive = {};
   DeclaredTest test = {};
-  std::string family = {};  ///< tests that are adjusted together; empty: a family of its own
+  std::string family = {};  ///< hypotheses of one family are adjusted together; empty: not adjusted
   Adjustment adjust = Adjustment::None;
 };
 /// The outcome of an adaptive procedure: each participant's threshold.
@@ -135,14 +136,15 @@ struct AnalysisPlan {
   double margin_sickness = 0.25;  ///< points of the scale from 0 to 3, > 0
   ExclusionRules exclusions;
   RepeatedPairs repeated_pairs = RepeatedPairs::Share;
-  int resamples = 10000;  ///< number of resamples for BCa intervals
+  int resamples = 10000;  ///< number of bootstrap resamples
   std::uint64_t seed = 1;
-  /// Scores at which a pilot's curve is fitted, by question id. For other questions the protocol gives the
-  /// score.
+  /// Scores at which a pilot's curve is fitted, by question id. The protocol sets the score of questions that
+  /// are not listed.
   std::map<std::string, double> levels = {};
   PilotRules pilot = {};  ///< how to treat reverse coders, drift and lapses in a pilot
   std::vector<DeclaredHypothesis> hypotheses = {};  ///< hypotheses of studies with factors
-  std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of plans/paper.toml
+  std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of
+                                                    ///< protocols/plans/paper.toml
 };
 
 }  // namespace stats

@@ -11,7 +11,7 @@ namespace stats {
 
 namespace {
 
-/// The test of each person's share of choices of a, used if some answered more than once.
+/// The test of each person's share of choices of a, used if a participant answered the pair more than once.
 FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwards, Alternative side,
                      const Family& family) {
   std::vector<PersonChoices> people = pair.people;

@@ -1,6 +1,7 @@
 #pragma once
-/// Task 1's scores with one value for each participant, n_* and method. Scenes are averaged first: in
-/// simulation, pooling one participant's blocks as if independent gave 7.7 % false alarms at 5 %.
+/// Task 1's scores with one value for each participant, n_* (nominal number of particles) and method. A
+/// participant's scenes are averaged first, because pooling dependent answers as if independent gives false
+/// alarms.
 
 #include <span>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace stats {
 
-/// One report. Indices count from 0. Its score is the mean of `items` answers.
+/// A participant's answers after one trial. Indices count from 0. The score is the mean of `items` answers.
 struct MethodScore {
   int participant = 0, scene = 0, n_star = 0, method = 0;
   double sum = 0;  ///< sum of the answers; NaN: the report was planned, but an answer is missing
@@ -46,7 +47,7 @@ class ScoreTable {
   const std::vector<std::string>& methods() const { return methods_; }
   /// Mean score of each participant; NaN if missing.
   std::span<const double> column(int n_star, int method) const;
-  /// The same means as sums and counts, for code that compares differences of means.
+  /// The same means as sums and counts, for code that must find equal differences of means.
   std::span<const ExactMean> means(int n_star, int method) const;
   /// Participants by methods, row after row, of all participants with an answer at this n_*; NaN = missing.
   std::vector<double> rows(int n_star) const;

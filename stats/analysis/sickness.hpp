@@ -13,7 +13,8 @@
 
 namespace stats {
 
-/// A score before and after, one value each per participant; differences are after - before.
+/// One score before and after the session, with one value of each per participant. Changes are after -
+/// before.
 struct SicknessChange {
   std::size_t n = 0;          ///< participants with both values
   std::size_t n_missing = 0;  ///< participants with only one of both values
@@ -25,8 +26,9 @@ struct SicknessChange {
 };
 
 /// `before` and `after` have one entry per participant: the sum and number of item answers (NaN: missing). A
-/// score is `weight` times the entry's mean. All results are in units of the score; of `ranks`, only the
-/// location and its interval. The ranks are computed from the entries themselves, so that equal changes tie.
+/// score is `weight` times the entry's mean. All results are in units of the score; in `ranks` this holds for
+/// the Hodges-Lehmann estimate and its interval alone. The ranks are computed from the entries themselves, so
+/// that equal changes tie.
 SicknessChange compare_sickness(std::span<const ExactMean> before, std::span<const ExactMean> after,
                                 double weight, const AnalysisPlan& plan);
 

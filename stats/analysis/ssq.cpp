@@ -9,7 +9,7 @@ namespace {
 struct Subscale {
   const char* name;
   int weight;                // in hundredths
-  std::array<int, 7> items;  // numbered from 1, as in the paper
+  std::array<int, 7> items;  // numbered from 1, as in Kennedy et al. 1993 (ssq.hpp)
 };
 
 constexpr std::array subscales{Subscale{"nausea", 954, {1, 6, 7, 8, 9, 15, 16}},

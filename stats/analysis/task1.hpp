@@ -21,7 +21,7 @@
 
 namespace stats {
 
-/// One box of the box plots (paper, Fig. 9). Indices as in the table.
+/// One box of the box plots (paper, Fig. 9). Indices are those of the ScoreTable.
 struct MethodCell {
   int n_star = 0, method = 0;
   std::vector<double> values;    ///< participants' means, without missing ones
@@ -29,7 +29,7 @@ struct MethodCell {
                                  ///< plot and included in all statistics
   Result<Description> summary = Refusal{"not computed"};
   Result<BoxPlot> box = Refusal{"not computed"};
-  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< gives the interval of the mean
+  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< t test against 0, for the interval of the mean
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};
 };
@@ -37,8 +37,8 @@ struct MethodCell {
 /// Comparison of two methods at one n_*: difference a - b over participants who judged both.
 struct MethodComparison {
   int n_star = 0, a = 0, b = 0;
-  std::size_t n = 0;                     ///< participants with both
-  std::size_t n_missing = 0;             ///< participants with only one
+  std::size_t n = 0;                     ///< participants who judged both methods
+  std::size_t n_missing = 0;             ///< participants who judged only one of them
   std::optional<double> mean_a, mean_b;  ///< means of the participants with both methods
   Result<PairedTTest> t = Refusal{"not computed"};
   std::optional<Unanimous> unanimous;  ///< set if all differences are equal: the exact test that replaces `t`
@@ -55,7 +55,7 @@ struct MethodComparison {
   std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh, mixed_p_holm, mixed_p_bh;
 };
 
-/// Numbers of participants on which the comparisons of two methods at one n_* are based.
+/// Numbers of participants in the comparisons at one n_* (nominal number of particles).
 struct PairPeople {
   int n_star = 0;
   std::size_t planned = 0;           ///< participants who were planned to judge a method
@@ -67,7 +67,7 @@ struct PairPeople {
 struct Omnibus {
   int n_star = 0;
   int n = 0;             ///< participants with all methods
-  int n_incomplete = 0;  ///< participants who lack a method
+  int n_incomplete = 0;  ///< participants who judged some methods, but not all
   Result<Friedman> friedman = Refusal{"not computed"};
   Result<RepeatedAnova> anova = Refusal{"not computed"};
 };

@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::int64_t largest_sum = 1'000'000;
 
-/// Distribution of the sum of +-values, each sign with probability one half, from -total to total in steps of
-/// one.
+/// Probabilities of the sums -total, -total + 1, ..., total of +-values, where each sign has probability one
+/// half.
 std::vector<double> distribution_of(const std::vector<std::int64_t>& values, std::int64_t total) {
   std::vector<double> mass(static_cast<std::size_t>(2 * total + 1), 0.0);
   const auto at = [&](std::int64_t sum) { return static_cast<std::size_t>(sum + total); };
@@ -164,7 +164,8 @@ std::vector<Comparison> comparisons(std::span<const PairChoice> choices) {
 
 IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, const AnalysisPlan& plan) {
   IntervalBias out;
-  std::map<int, std::pair<int, int>> people;  // by participant: choices of the first interval, answers
+  std::map<int, std::pair<int, int>> people;  // key: participant; value: choices of the first interval,
+                                              // answers
   for (const PairChoice& choice : choices) {
     auto& [first, answers] = people[choice.participant];
     first += choice.first_chosen ? 1 : 0;

@@ -30,8 +30,9 @@ inline constexpr const char* share_test_name = "exact permutation test of people
 struct ShareTest {
   int participants = 0;
   double share = 0.5;          ///< mean of the people's shares of choices
-  std::array<double, 2> ci{};  ///< Student's t of the shares, within 0 to 1; Clopper-Pearson if all always
-                               ///< chose alike; [0, 1] if the shares are equal otherwise
+  std::array<double, 2> ci{};  ///< Student's t of the shares, cut to [0, 1]; Clopper-Pearson over people if
+                               ///< all shares are 0 or all are 1; [0, 1] without a t (equal shares, one
+                               ///< person)
   std::string ci_name;         ///< name of the interval in `ci`, for display
   double p = 1;                ///< exact p of the permutation test
 };
@@ -68,7 +69,8 @@ struct PairPreference {
   /// Exact, two-sided. Refused without answers, and if a participant answered more than once under
   /// RepeatedPairs::Refuse or Share.
   Result<BinomialTest> test = Refusal{"not computed"};
-  /// Two-sided test that replaces `test` if a participant answered more than once under RepeatedPairs::Share.
+  /// Two-sided test that replaces `test` if a participant answered more than once under RepeatedPairs::Share;
+  /// empty if share_test() refuses.
   std::optional<ShareTest> shares;
   /// p corrected over all pairs; a refused test counts as not significant.
   std::optional<double> p_holm, p_bh;
@@ -84,7 +86,7 @@ struct IntervalBias {
   /// t test of each participant's share of choices of the first interval against one half. It is valid even
   /// if the answers of a participant are dependent.
   Result<OneSampleTTest> by_participant = Refusal{"not computed"};
-  /// Set if all shares are equal: the exact test that replaces the t test.
+  /// Set if all shares are equal, which leaves no t: the exact sign test that replaces the t test.
   std::optional<Unanimous> all_alike;
   Result<OrderBias> model = Refusal{"not computed"};  ///< within the Bradley-Terry model
 };

@@ -7,10 +7,10 @@ namespace stats {
 
 namespace {
 
-/// Counts of participants planned to judge both methods, and their means.
+/// Counts of participants planned to judge both methods.
 struct Seen {
   std::size_t planned = 0, both = 0, missing_a = 0, missing_b = 0;
-  double mean_a = 0, mean_b = 0;  ///< means of participants with both
+  double mean_a = 0, mean_b = 0;  ///< means of the participants who judged both
 };
 
 Seen count(const ScoreTable& table, int n_star, int a, int b) {
@@ -62,7 +62,7 @@ Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, i
   const auto down = way_down(estimate, holds);
   const auto up = way_down(-estimate, {-holds.high, -holds.low});
   const ScoreScale& scale = table.scale();
-  const bool a_falls = scale.higher_is_better;  // the estimate falls if a becomes worse
+  const bool a_falls = scale.higher_is_better;  // the estimate a - b falls as a becomes worse
   out.a = {seen.missing_a, room_of(scale, seen.mean_a),
            shift_of(a_falls ? down : up, seen.missing_a, seen.planned)};
   out.b = {seen.missing_b, room_of(scale, seen.mean_b),

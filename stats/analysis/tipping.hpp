@@ -45,8 +45,8 @@ Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, i
 Result<TippingPoint> tipping_point_two_sided(const ScoreTable& table, int n_star, int a, int b,
                                              double estimate, double half);
 
-/// Counts the missing answers and gives no shift; for differences that are all equal and so have no standard
-/// error.
+/// Counts the missing answers and leaves the shifts empty: for differences that are all equal and so have no
+/// standard error.
 Result<TippingPoint> no_tipping_point(const ScoreTable& table, int n_star, int a, int b, bool holds);
 
 }  // namespace stats
