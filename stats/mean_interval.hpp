@@ -19,9 +19,9 @@ struct MeanInterval {
 /// values are finite and confidence lies in (0, 1).
 MeanInterval mean_interval(std::span<const double> values, double confidence = 0.95);
 
-/// Mean of each group of `size` consecutive values. A group holds one participant's repeats of a condition;
-/// these are not independent, so the group counts as one value. Values that are not finite are left out; a
-/// group with no finite value is omitted. std::invalid_argument unless the values fill whole groups.
+/// Mean of each group of `size` consecutive values. A group holds the repeats of one measurement; repeats are
+/// not independent, so a group counts as one value. Values that are not finite are left out; a group with no
+/// finite value is omitted. std::invalid_argument unless the values fill whole groups.
 std::vector<double> group_means(std::span<const double> values, std::size_t size);
 
 /// group_means of a[i] - b[i]; a pair counts where both are finite. std::invalid_argument when the lengths

@@ -7,22 +7,22 @@
 
 namespace base {
 
-/// The folder that holds `path`: "." for a bare name.
+/// The parent folder of `path`; "." if `path` is a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Writes the directory entries of the folder of `path` to disk (fsync). Skips a file system that cannot sync
-/// folders, and a folder that does not exist.
+/// Writes the directory entries of the folder of `path` to disk (fsync). Does nothing if the folder does not
+/// exist or its file system cannot sync folders.
 void sync_folder_of(const std::filesystem::path& path);
 
-/// Writes to disk the bytes of a file that another library wrote. Do not call it while SQLite has the file
-/// open in this process: SQLite would lose its locks.
+/// Writes the bytes of a file to disk (fsync), for files that another library wrote. Do not call it while
+/// SQLite has the file open in this process: SQLite would lose its locks.
 void sync_file(const std::filesystem::path& path);
 
 /// Writes the directory entries of a folder, and of all folders below it, to disk.
 void sync_folders(const std::filesystem::path& folder);
 
-/// Renames, then syncs the folders of both names. flags: of renameat2(2). Returns false if the rename failed;
-/// errno is then that of renameat2.
+/// Renames, then syncs the folders of both names. `flags` are those of renameat2(2). Returns false if the
+/// rename failed; errno is then the error of renameat2.
 bool rename_durably(const std::filesystem::path& from, const std::filesystem::path& to, unsigned flags = 0);
 
 /// Removes a file, a link or a folder with all its contents, then syncs the parent folder. It syncs even if

@@ -1,6 +1,6 @@
 #pragma once
-/// A JSON value. nlohmann's library parses and prints it, but only json_text.cpp includes it: its templates
-/// took half of the compile time of files that build a table of results.
+/// A JSON value. nlohmann's library parses and prints the text, but only json_text.cpp includes that library,
+/// because its templates slow down the compilation of each file that uses them.
 ///
 ///     base::Json fit = {{"a", 24.5}, {"b", 0.021}, {"people", 16}};
 ///     fit["scenes"] = base::Json::array({"SingleDam"});
@@ -31,8 +31,8 @@ class JsonError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Deepest nesting of brackets and braces that is accepted. The JSON files of these programs are nested less
-/// deeply.
+/// Deepest nesting of brackets and braces that is accepted, deeper than in any JSON file that the project's
+/// programs write.
 inline constexpr int most_json_levels = 32;
 
 /// A path to a value within a JSON value, as in RFC 6901: "/task1/mixed/0". The empty path names the value
@@ -123,7 +123,7 @@ class Json {
   bool is_object() const { return type_ == Type::Object; }
   bool is_structured() const { return is_array() || is_object(); }
 
-  /// Number of elements or members; 0 for null, 1 for every other value.
+  /// Number of elements of an array or members of an object; 0 for null, 1 for every other value.
   std::size_t size() const;
   bool empty() const { return size() == 0; }
   Json* begin() { return items_.data(); }
@@ -139,13 +139,14 @@ class Json {
     std::string key;
     const Json& value;
   };
-  /// The members with their keys, or the elements with their indices as strings; empty for other values.
+  /// An object's members with their keys, or an array's elements with their indices as strings; empty for
+  /// other values.
   std::vector<Member> items();
   std::vector<ConstMember> items() const;
 
   bool contains(std::string_view key) const { return find(key) != end(); }
   bool contains(const JsonPointer& place) const;
-  /// Returns end() if there is no such member.
+  /// The member with this key; end() if there is none.
   Json* find(std::string_view key);
   const Json* find(std::string_view key) const;
   /// Throws JsonError if there is no such member or element.
@@ -179,7 +180,7 @@ class Json {
   /// Returns the number of members removed, 0 or 1.
   std::size_t erase(std::string_view key);
 
-  /// Throws JsonError if the value is of another kind. Numbers are converted as C++ does.
+  /// Throws JsonError if the value is of another kind. Numbers are converted by static_cast.
   template <class T>
   T get() const {
     T out;
@@ -210,7 +211,7 @@ class Json {
     out.clear();
     for (const Json& value : elements()) out.insert(value.get<T>());
   }
-  /// Converts implicitly, with the result of get<T>(). Code that compares or computes calls get<T>() itself.
+  /// Converts implicitly to the types listed, as get<T>() does.
   template <class T>
   requires(std::same_as<T, std::string> || std::same_as<T, double> || std::same_as<T, int> ||
            std::same_as<T, std::vector<double>> || std::same_as<T, std::set<std::string>>)
@@ -241,7 +242,7 @@ class Json {
   template <class T>
   requires std::is_arithmetic_v<T>
   friend std::partial_ordering operator<=>(const Json& a, T b) { return a <=> Json(b); }
-  /// Prints the value as JSON on one line; for the messages of tests.
+  /// Prints the value as JSON on one line; GoogleTest uses this in its messages.
   friend std::ostream& operator<<(std::ostream& out, const Json& value);
 
  private:
@@ -268,7 +269,7 @@ class Json {
 };
 
 /// True if brackets and braces outside strings are nested deeper than `levels`. The text need not be valid
-/// JSON. A deep tree would overflow the stack when it is printed or compared.
+/// JSON. Callers refuse such text, because printing or comparing a deep tree would overflow the stack.
 bool nested_deeper_than(int levels, std::string_view json);
 
 /// Parses untrusted JSON: null if the text is not JSON or is nested deeper than `levels`.

@@ -65,8 +65,8 @@ struct JsonLibrary {
         return out;
       }
       case Json::Type::Object: {
-        // Appends to the underlying vector, because ordered_json's own emplace would search for each key. The
-        // keys are already unique.
+        // Appends to the underlying vector, because ordered_json's own emplace would search all earlier keys
+        // for each new one. Keys of a Json object are unique already.
         Library::object_t out;
         out.reserve(value.items_.size());
         for (std::size_t i = 0; i < value.items_.size(); ++i)

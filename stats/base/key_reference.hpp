@@ -14,7 +14,7 @@ struct KeyReference {
   std::string values;    ///< range or choices; empty: any
   std::string fallback;  ///< value of an absent key; empty: the key is required
   std::string meaning;
-  std::string unit = {};  ///< empty: no unit, or the unit is in the page's introduction
+  std::string unit = {};  ///< empty: no unit, or the page's introduction states it
 };
 
 /// KeyReference::fallback of a key that only some files need; the column "meaning" says which files need it.

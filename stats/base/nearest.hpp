@@ -16,7 +16,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// `word`, or `word` is longer than 100 bytes.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
-/// Advice for an unknown word: `use one of "a", "b"`, followed by the nearest known word if one is near.
+/// Advice for an unknown word: `use one of "a", "b"`, followed by the word of nearest_word() if there is one.
 std::string use_one_of(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace base

@@ -10,17 +10,18 @@ namespace base {
 /// Who may read a file: its owner alone (0600), or everyone whom the umask allows.
 enum class Readers { Owner, AsUmask };
 
-/// 16 random hexadecimal digits that cannot be guessed.
+/// 16 hexadecimal digits from a cryptographic random generator.
 std::string random_digits();
 
-/// Name for a temporary file beside `path`: `path` + ".tmp" + 16 random hexadecimal digits. Others who may
-/// write to that folder cannot guess it.
+/// Name for a temporary file beside `path`: `path` + ".tmp" + 16 random hexadecimal digits. Other users of
+/// the folder cannot guess the name and create a file or link under it first.
 std::filesystem::path draft_name(const std::filesystem::path& path);
 
 /// True if `name` is `target` + ".tmp" + hexadecimal digits.
 bool is_draft_name(const std::string& name, const std::string& target);
 
-/// Deletes drafts of `path` that a killed process left behind, that is, drafts that no NewFile has locked.
+/// Deletes temporary files of `path` (draft_name()) that a killed process left behind, that is, temporary
+/// files that no NewFile has locked.
 void remove_stale_drafts(const std::filesystem::path& path);
 
 /// base::Error unless a file can be written to `path`: `path` is a regular file or does not exist (a device,
@@ -37,9 +38,9 @@ std::filesystem::path make_folder_of(const std::filesystem::path& path);
 
 /// A new file under a temporary name in the folder of `path`; put_in_place() renames it to `path`. It is
 /// created exclusively (O_EXCL), so no existing file or link is overwritten by write(). If put_in_place() was
-/// not called, the destructor deletes the file and the folders created for it. The file is locked (flock) as
-/// long as the object lives. Errors are base::Error and name `path`. The constructor calls check_output()
-/// first.
+/// not called, the destructor deletes the file and those folders created for it that are empty. The file is
+/// locked (flock) until put_in_place() or the destructor closes it. Errors are base::Error and name `path`.
+/// The constructor calls check_output() first.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path, Readers readers = Readers::AsUmask);

@@ -6,9 +6,9 @@
 
 namespace base {
 
-/// base::Error unless `name` is a relative path that is valid on every computer and stays inside its folder:
-/// names separated by '/', each at most 200 letters, digits, '.', '_' and '-', and none beginning with '.' or
-/// '-'. place: the folder that the file would be written to.
+/// base::Error unless `name` is a relative path of portable characters that stays inside its folder: names
+/// separated by '/', each at most 200 letters, digits, '.', '_' and '-', and none beginning with '.' or '-'.
+/// `place` is the folder to which the file would be written; the error names it.
 void check_file_name(const std::string& name, const std::string& place);
 
 /// Filters a stream of text for a terminal: control characters other than tab and line feed, and bytes that

@@ -1,6 +1,6 @@
 #pragma once
-/// Regular expressions. Only pattern.cpp includes <regex>, since including it adds three to four seconds to
-/// the compile time of a file.
+/// Regular expressions. Outside the tests only pattern.cpp includes <regex>, because that header compiles
+/// slowly.
 
 #include <functional>
 #include <memory>
@@ -22,7 +22,7 @@ class Pattern {
   Pattern(Pattern&&) noexcept;
   Pattern& operator=(Pattern&&) noexcept;
 
-  /// The groups if the whole text matches.
+  /// The groups if the expression matches the whole text; else empty.
   std::optional<Groups> match(const std::string& text) const;
   /// The groups of each match within the text, from left to right.
   std::vector<Groups> all(const std::string& text) const;

@@ -13,8 +13,8 @@ inline constexpr int least_picture_side = 16, most_picture_side = 8192;
 /// The size as text: "1280x720".
 std::string size_words(PictureSize size);
 
-/// Largest number of pixels of a picture, 8192 x 4096. Drawing a picture of fluid takes about 40 bytes of
-/// memory a pixel.
+/// Largest number of pixels of a picture, 8192 x 4096. Drawing the fluid takes about 40 bytes of memory for
+/// each pixel.
 inline constexpr long long most_picture_pixels = 1LL << 25;
 
 /// Parses "1280x720", without spaces. base::Error, beginning with the option and the text, if the text is not

@@ -1,5 +1,6 @@
 #pragma once
-/// Identity of the running program. Results of two different programs are not combined.
+/// Identity of the running program. Files of results contain it, so that results of different builds can be
+/// told apart.
 
 #include <string>
 

@@ -81,8 +81,8 @@ void print_coloured(const std::string& text) {
   write_out(out + plain.rest());
 }
 
-// Because open() returns the lowest free number, opening in ascending order fills the gaps. The descriptors
-// stay open over exec.
+// open() returns the lowest free number, so opening in ascending order fills the gaps. Programs started by
+// exec inherit the descriptors.
 bool open_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != fd) return false;

@@ -9,12 +9,13 @@
 
 namespace base {
 
-/// Opens /dev/null on each of the descriptors 0, 1 and 2 that is closed; otherwise a data file could get the
-/// closed descriptor's number, and messages would be written into the data file. Returns false on failure.
+/// Opens /dev/null on each of the descriptors 0, 1 and 2 that is closed. Otherwise the next file opened would
+/// get that number, and messages would be written into a data file. Returns false on failure.
 bool open_standard_streams();
 
-/// While an object of this class exists, everything printed to stdout passes through base::TerminalText,
-/// which replaces control characters by '?'. Use print_coloured() for coloured text.
+/// While an object of this class exists, everything that C functions such as std::printf print to stdout
+/// passes through base::TerminalText, which replaces control characters by '?'. std::cout and
+/// print_coloured() bypass this filter.
 class PlainOutput {
  public:
   PlainOutput();

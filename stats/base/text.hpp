@@ -15,12 +15,11 @@ namespace base {
 /// overlong forms, no surrogates, nothing above U+10FFFF) or `text` is empty.
 std::size_t utf8_length(std::string_view text);
 
-/// True if all of the text is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F), so that
-/// every file and terminal shows it unchanged.
+/// True if all of the text is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F).
 bool is_plain_line(std::string_view text);
 
-/// A user's value for display in a message: characters that is_plain_line() would refuse become '?'. If the
-/// value has more than `most_bytes`, its middle is replaced by the number of its bytes.
+/// A user's value for display in a message: control characters and bytes that are not UTF-8 become '?'. If
+/// the value is longer than `most_bytes`, its middle is replaced by the value's length in bytes.
 std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 
 /// The words, separated by ", ".
@@ -29,7 +28,7 @@ std::string joined(const std::vector<std::string>& words);
 /// The words as an English list: "A, B and C".
 std::string enumerated(const std::vector<std::string>& words);
 
-/// True if the text holds spaces, tabs and line ends alone, or nothing.
+/// True if the text is empty or consists of spaces, tabs and line ends.
 bool is_blank(std::string_view text);
 
 /// The parts of a line between separators, such as the cells of CSV without quotes. An empty last part is

@@ -12,7 +12,7 @@ inline double milliseconds_now() {
       .count();
 }
 
-/// The element at index q (n - 1), rounded, of the n sorted values; n is at least 1.
+/// The element at index q (n - 1), rounded, of the n sorted values; n >= 1 and 0 <= q <= 1.
 inline double quantile(std::vector<double> values, double q) {
   const auto rank = std::lround(q * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());

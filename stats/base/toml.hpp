@@ -1,7 +1,6 @@
 #pragma once
-/// Checked reading of TOML: the reader of a format looks up every key with its type and range. A key in the
-/// file that the reader did not look up is an error. Errors are base::Error at file:line:column. Only the
-/// implementation includes toml++ (toml_parser.hpp).
+/// Checked reading of TOML: the reader of a format looks up every key with its type and range. finish()
+/// refuses a key that the reader did not look up. Errors are base::Error at file:line:column.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,17 +20,18 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 inline constexpr Range any{};
-/// The range of all numbers above zero.
+/// All numbers above zero, from the smallest normal double on.
 inline constexpr Range positive{std::numeric_limits<double>::min()};
 inline constexpr Range non_negative{0.0};
 
 /// How a reader looked up one key.
 struct AskedKey {
   std::string type;  ///< "number", "whole number", "true or false", "text", "list of numbers", "list of
-                     ///< texts", "table" or "tables"; empty: the reader only looked up if the key is present
+                     ///< texts", "table" or "tables"; empty: the reader only asked if the key is present
   std::optional<Range> range;        ///< range of allowed numbers
   std::vector<std::string> choices;  ///< allowed texts
-  std::string fallback;              ///< value for an absent key, as TOML writes it; empty: none
+  std::string fallback;              ///< value of an absent key, as TOML writes it; empty: the reader gave
+                                     ///< none
 };
 
 /// A range as shown in messages: "[0, 1]", "(0, inf]".
@@ -53,12 +53,12 @@ class TomlTable {
   std::string string(std::string_view key) const;
   /// The text of a key; an error unless it is one of the words `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed) const;
-  /// The numbers of a list, each within `range`. An error unless there are exactly `size` of them; a size of
-  /// 0 allows any number.
+  /// The numbers of a list, each within `range`. An error unless there are exactly `size` numbers; a size of
+  /// 0 allows any number of them.
   std::vector<double> numbers(std::string_view key, std::size_t size = 0, Range range = any) const;
   std::vector<std::string> strings(std::string_view key) const;
   TomlTable table(std::string_view key) const;
-  /// The table's keys; for a table written on one line, in the order of the file.
+  /// The table's keys, ordered by the position of their values in the file.
   std::vector<std::string> keys() const;
   /// [[key]]: an array of tables; empty when absent.
   std::vector<TomlTable> tables(std::string_view key) const;
@@ -82,8 +82,8 @@ class TomlTable {
   /// count as one, without indices. Tests use this to compare a format's reference with its reader.
   std::map<std::string, AskedKey> asked() const;
 
-  /// Call once on the root after reading everything. Throws an error at the first key that was not looked up;
-  /// the error names the known keys.
+  /// Call once on the root after reading everything. Throws an error at a key that was not looked up, if
+  /// there is one; the error names the known keys.
   void finish() const;
 
   struct State;

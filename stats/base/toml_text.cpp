@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Scans a text once, with just enough grammar to distinguish keys, values, quoted texts and comments. After
-/// a syntax error the scan may be wrong, which does no harm: the parser stops at the error.
+/// Scans a text with just enough grammar to distinguish keys, values, quoted texts and comments. After a
+/// syntax error the scan may be wrong, which does no harm, because the parser refuses the text at the error.
 class Walk {
  public:
   Walk(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -133,8 +133,8 @@ class Walk {
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// Refuses a second '=', and a quote or opening bracket directly after a value: toml++ 3.3 takes text
-  /// directly after a number or date as a part of it.
+  /// Refuses a second '=', and a quote or opening bracket directly after a value: toml++ 3.3 reads text
+  /// directly after a number or date as a part of that value.
   void check_value_is_alone(char c) const {
     if (!key_ && (c == '=' || (value_ && std::string_view("\"'[{").find(c) != std::string_view::npos)))
       fail(std::string("is a ") + c + " behind a value", "put a comma or the end of the line between them");

@@ -7,7 +7,7 @@
 
 namespace base {
 
-/// ViP-Lab did not exist before this time: a clock that shows an earlier time is wrong.
+/// A clock that shows an earlier time is wrong, because ViP-Lab did not exist then.
 inline constexpr const char* before_vip_lab_utc = "2024-01-01T00:00:00Z";
 
 /// The day on which this program was built, at 00:00:00.

@@ -4,7 +4,7 @@ namespace html {
 
 namespace {
 
-// Colours have a contrast of at least 7 to 1 against the page; coloured backgrounds are not printed.
+// Text has a contrast of at least 7 to 1 against its background. Coloured backgrounds are not printed.
 constexpr const char* style = R"(
 :root { color-scheme: light; }
 body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; color: #111; background: #fff; margin: 0 auto; max-width: 62rem; padding: 1rem 1.5rem 4rem; overflow-wrap: anywhere; }

@@ -31,7 +31,7 @@ std::string subsection(const std::string& title, const std::string& body);
 std::string paragraph(const std::string& html);
 /// A figure with its caption below; `caption` is HTML.
 std::string figure(const svg::Picture& picture, const std::string& caption);
-/// A section that the reader can open and close. On paper it is open or closed as on the screen.
+/// A section that the reader can open and close. It is printed as it is shown: open or closed.
 std::string details(const std::string& summary, const std::string& body);
 std::string list(const std::vector<std::string>& items);
 /// A complete page: the head with the style sheet, then `body`. The element of `body` with the main content

@@ -13,8 +13,9 @@ struct LogScale {
   double share(double value) const;
 };
 
-/// 1, 2 and 5 times each power of ten, from the last one not above `least` to the first one not below `most`,
-/// at least two. If most > 1000 least, only the powers of ten. 0 < least <= most.
+/// Ticks of an axis from `least` to `most`, 0 < least <= most: 1, 2 and 5 times each power of ten, or the
+/// powers of ten alone if most > 1000 least. They run from the last tick not above `least` to the first tick
+/// not below `most`; at least two.
 std::vector<double> log_ticks(double least, double most);
 std::string tick_label(double tick);
 

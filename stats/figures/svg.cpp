@@ -102,7 +102,8 @@ std::string cross(Point centre, double reach, const std::string& attributes) {
               attributes);
 }
 
-// Draws no background rectangle: it would cover the page's shading that indicates more content to scroll to.
+// Without a background rectangle, which would cover the shading by which the HTML page shows that there is
+// more to scroll to.
 std::string element(const Picture& picture) { return drawn(picture, "", ""); }
 
 std::string document(const Picture& picture) {

@@ -12,7 +12,7 @@ struct Point {
 };
 
 /// Seven colours of Okabe and Ito (2008), which people with common forms of colour blindness can distinguish,
-/// and a grey, which is not theirs. Figures never rely on colour alone.
+/// and a grey of our own.
 namespace colour {
 inline constexpr const char* orange = "#e69f00";
 inline constexpr const char* sky = "#56b4e9";
@@ -26,10 +26,10 @@ inline constexpr const char* grey = "#999999";
 
 /// `value` with a fixed number of decimals; never "-0.00".
 std::string number(double value, int decimals = 2);
-/// Escapes free text for use between tags and in attributes, in SVG and in HTML. Control characters, which
-/// XML does not allow, become spaces.
+/// Escapes free text for use between tags and in attributes, in SVG and in HTML. Control characters other
+/// than line feed become spaces, because XML forbids most of them.
 std::string escaped(std::string_view raw);
-/// ` name="value"`, escaped; several can be concatenated.
+/// The text ` name="value"` with the value escaped; several such texts can be concatenated.
 std::string attribute(std::string_view name, std::string_view value);
 
 /// A <text> element. `words` are escaped. `attributes` are inserted as written, here and in the functions

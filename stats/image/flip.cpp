@@ -119,8 +119,8 @@ double hyab(const Colour& a, const Colour& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-/// Contrast sensitivity of one channel: a sum of two Gaussians over the distance in degrees of visual angle,
-/// with amplitudes a and widths b.
+/// Contrast-sensitivity filter of one channel: the sum of two Gaussians of the distance x in degrees of
+/// visual angle, each a sqrt(pi / b) exp(-pi^2 x^2 / b).
 struct Sensitivity {
   double a1, b1, a2, b2;
 };

@@ -20,8 +20,8 @@ using MaskView = std::span<const std::uint8_t>;
 
 /// A metric over the pixels of a mask.
 struct ImageScore {
-  double value = 0;        ///< NaN when the mask is empty
-  std::size_t pixels = 0;  ///< pixels counted
+  double value = 0;        ///< NaN if `pixels` is 0
+  std::size_t pixels = 0;  ///< number of pixels in the mask for which the metric is defined
 };
 
 /// Throws std::invalid_argument unless both pictures have the same positive size and all spans fit it.

@@ -32,8 +32,8 @@ std::vector<double> luma(const ImageView& image) {
   return out;
 }
 
-/// Rows of the SSIM map that a thread computes as one block. Their windows reach over ten more rows of the
-/// picture, which the thread filters too.
+/// Rows of the SSIM map that a thread computes as one block. Their windows extend over ten more rows of the
+/// picture, which neighbouring blocks filter again.
 constexpr int band_rows = 24;
 /// The quantities that the window averages: x, y, x^2, y^2 and x y.
 constexpr int quantities = 5;
