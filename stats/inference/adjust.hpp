@@ -24,10 +24,10 @@ struct AdjustedP {
   std::size_t missing = 0;
 };
 
-/// Corrects p-values by `method`. Missing values (NaN) stay missing and do not count. `family` is the number
-/// of tests; 0 means the number of p-values given. If `family` is larger than that number, the absent
-/// p-values count as 1. Refused: no p-value at all, one outside [0, 1], a family smaller than the number
-/// given.
+/// Corrects p-values by `method`. Missing values (NaN) stay missing and are not counted as tests. `family` is
+/// the number of tests; 0 means the number of p-values that are not missing. If `family` is larger than that
+/// number, the absent p-values count as 1. Refused: no p-value at all, one outside [0, 1], a family smaller
+/// than the number given.
 Result<AdjustedP> adjust(std::span<const double> p, Adjustment method, std::size_t family = 0);
 
 /// The paper's marks (Fig. 9 and 10): "***" for p < .001, "**" for p < .01, "*" for p < .05, else "".

@@ -17,7 +17,7 @@ struct BinomialTest {
   double confidence = 0.95;
   double estimate = 0;  ///< k / n
   /// Exact. Two-sided: the sum of all point probabilities that do not exceed the observed one (by more than
-  /// 1e-7 of it), as in Fisher's method; not the doubled tail. A p below the range of double is given as the
+  /// 1e-7 of it), as in R's binom.test; not the doubled tail. A p below the range of double is given as the
   /// smallest positive double, since it is not zero.
   double p = 0;
   /// Mid-p: only half of the observed point's probability counts; two-sided it is twice the smaller tail

@@ -31,14 +31,15 @@ struct BootstrapInterval {
   double estimate = 0;      ///< the statistic of the sample
   double mean = 0, se = 0;  ///< mean and sd of the resampled estimates (divisor N - 1)
   double acceleration = 0;  ///< acceleration of the BCa interval, from the jackknife
-  BcaInterval bca{};  ///< the interval to report; a resample equal to the estimate counts half as below, half
-                      ///< as above it
+  BcaInterval bca{};  ///< the interval to report: a resample equal to the estimate counts half as below and
+                      ///< half as above the estimate
   /// Counts only resamples strictly below the estimate, as R's boot does. Empty if no or all resamples are
-  /// below.
+  /// below the estimate, or if the acceleration reverses the tails.
   std::optional<BcaInterval> bca_strict{};
   std::array<double, 2> percentile{};        ///< type 7 quantiles
   std::array<double, 2> percentile_type6{};  ///< type 6 quantiles (p (N + 1))
-  std::array<double, 2> basic{};             ///< 2 estimate - quantiles on the normal scale
+  std::array<double, 2> basic{};             ///< ends 2 estimate - q, for quantiles q interpolated on the
+                                             ///< normal scale
 };
 
 /// Resamples the values (seeded; the same on every machine). The statistic must be defined for any sample of

@@ -87,7 +87,7 @@ class ChiMixture {
   double t_, df_, ncp_, sign_, log_scale_;
 };
 
-/// P(T <= t) of the noncentral t for ncp >> 1, by the trapezoidal rule over the normal variate z. The
+/// P(T <= t) of the noncentral t for ncp > 60, by the trapezoidal rule over the normal variate z. The
 /// chi-square probability in the integrand changes slowly with z.
 double large_ncp_lower(double t, double df, double ncp) {
   if (t <= 0) return 0;
@@ -114,8 +114,8 @@ double large_ncp_upper(double t, double df, double ncp) {
 /// log of p / reference, bounded below so that the root finder gets a finite value where p is zero.
 double log_ratio(double p, double reference) { return std::max(std::log(p / reference), -1e6); }
 
-/// P(T >= |t|) of Student's t. For large df GSL's incomplete beta function is only an approximation, so that
-/// the integral of ChiMixture is used.
+/// P(T >= |t|) of Student's t. For df > 5e4 GSL's incomplete beta function is only an approximation, so the
+/// integral of ChiMixture replaces it.
 double student_tail(double t, double df) {
   constexpr double largest_for_beta = 5e4;
   t = std::abs(t);
@@ -165,7 +165,7 @@ double student_upper_quantile(double p, double df) {
   require(p > 0 && p < 1, "a probability must lie between 0 and 1");
   if (p > 0.5) return -student_upper_quantile(1 - p, df);
   if (p == 0.5) return 0;
-  // A small cache: tables of tests with equal numbers of people need the same few quantiles.
+  // A cache of four quantiles: tables of tests with equal numbers of people need the same ones again.
   struct Known {
     double p = 0, df = 0, value = 0;
   };

@@ -21,8 +21,8 @@ double student_p(double t, double df, Alternative alternative);
 double student_upper_quantile(double p, double df);
 
 /// P(T <= t) and P(T >= t) of the noncentral t, T = (Z + ncp) / sqrt(chi2(df) / df). Computed by the
-/// trapezoidal rule over the logarithm of the chi variate, which converges exponentially (Trefethen and
-/// Weideman 2014) and, unlike a series, does not break down at a large ncp. Relative error below 1e-11.
+/// trapezoidal rule, which converges exponentially (Trefethen and Weideman 2014): over the logarithm of the
+/// chi variate for |ncp| <= 60, over the normal variate Z beyond. Relative error below 1e-11 for |ncp| <= 60.
 double noncentral_t_lower(double t, double df, double ncp);
 double noncentral_t_upper(double t, double df, double ncp);
 
@@ -59,9 +59,9 @@ double beta_quantile(double probability, double a, double b);
 double log_binomial_lower(double k, double n, double p, double q);
 double log_binomial_upper(double k, double n, double p, double q);
 
-/// P(X > x) of chi-square; df > 0. Like probability(), never 0 for a finite x.
+/// P(X > x) of chi-square; df > 0. Never 0 for a finite x: at least the smallest positive double.
 double chi2_upper(double x, double df);
-/// P(|Z| > |z|) of the standard normal; never 0 for a finite z.
+/// P(|Z| > |z|) of the standard normal. Never 0 for a finite z: at least the smallest positive double.
 double normal_two_sided(double z);
 
 /// exp(log_p), but at least the smallest positive double if log_p is finite: a probability too small for

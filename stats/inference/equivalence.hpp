@@ -22,13 +22,14 @@ struct EquivalenceTest {
   double t_lower = 0, p_lower = 0;
   double t_upper = 0, p_upper = 0;
   double p = 0;  ///< the larger of p_lower and p_upper: equivalence is shown if p < alpha
-  std::array<double, 2>
-      ci{};           ///< interval of confidence 1 - 2 alpha; lies inside the margins if equivalence is shown
+  /// interval of confidence 1 - 2 alpha; it lies inside the margins if equivalence is shown
+  std::array<double, 2> ci{};
   std::size_t n = 0;  ///< number of pairs
   std::size_t n_missing = 0;
 };
 
-/// Tests that the mean of x - y over pairs lies within the margins. alpha in (0, 1/2).
+/// Tests that the mean of x - y over pairs lies within the margins. alpha in (0, 1/2)
+/// (std::invalid_argument).
 Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
                                            Margins margins, double alpha = 0.05);
 

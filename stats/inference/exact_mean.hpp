@@ -31,7 +31,7 @@ struct ExactDifferences {
 };
 
 /// x - y, pair by pair. std::invalid_argument unless the lengths are equal and the counts above 0. Refused:
-/// an infinite sum; counts whose common denominator makes the numerators reach 2^53.
+/// an infinite sum; counts whose common denominator is so large that numerators could exceed 2^53.
 Result<ExactDifferences> exact_differences(std::span<const ExactMean> x, std::span<const ExactMean> y);
 
 }  // namespace stats

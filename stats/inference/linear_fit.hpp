@@ -19,8 +19,10 @@ struct LinearFit {
   double rss = 0;
   double df = 0;                      ///< n - number of coefficients
   std::optional<double> residual_sd;  ///< sqrt(rss / df)
-  std::optional<double> r2;  ///< about the mean with an intercept, about zero without; empty if y is constant
-  /// F test that all slopes are zero. Empty without slopes, or if y is constant or fitted perfectly.
+  std::optional<double> r2;  ///< about the mean of y with an intercept, about zero without one; empty if y
+                             ///< does not vary about it
+  /// F test that all slopes are zero. Empty without slopes, if df = 0, if r2 is empty, or if y is fitted
+  /// perfectly.
   std::optional<double> f, f_p;
 };
 

@@ -27,13 +27,13 @@ struct LinearMixedFit {
   std::vector<std::string> left_out;     ///< terms that are combinations of earlier ones
   std::vector<double> beta, covariance;  ///< coefficients of `terms`, and their covariance (row-major)
   double sd_participant = 0;
-  std::optional<double> sd_thing;  ///< empty if no participant answered twice about one thing; the effect is
-                                   ///< then part of the residual
+  std::optional<double> sd_thing;  ///< empty if no participant answered twice about one thing; the effect of
+                                   ///< participant and thing is then part of the residual
   double sd_residual = 0;
   double criterion = 0;  ///< -2 times the restricted log-likelihood
   int n = 0, participants = 0;
-  /// Which standard deviation is estimated as zero; empty if none is. The fit is then that of the model
-  /// without this effect.
+  /// Names, in words, the random effects whose standard deviation is estimated as zero; the fit is that of
+  /// the model without them. Empty if there are none.
   std::string singular;
   /// Derivatives of `covariance` with respect to each nonzero ratio of a random effect's standard deviation
   /// to the residual's, then with respect to the residual's standard deviation. `parameter_covariance` is the
@@ -41,7 +41,7 @@ struct LinearMixedFit {
   std::vector<std::vector<double>> covariance_slopes;
   std::vector<double> parameter_covariance;
 
-  /// Index of the term in `terms`; -1 if it is not there.
+  /// Index of the term in `terms`; -1 if `terms` lacks it.
   int index_of(const std::string& term) const;
   /// Tests the weighted sum of `beta` against zero. One weight for each of `terms` (std::invalid_argument),
   /// not all zero; confidence in (0, 1).

@@ -100,7 +100,7 @@ std::string why_no_tost(const Equivalence& e) {
 }
 
 /// The counts k at which the test is significant: k <= lower or k >= upper. p decreases with the distance
-/// from n p0 on either side, so bisection finds each end.
+/// from n p0 on either side, so bisection finds `lower` and `upper`.
 struct Rejection {
   double lower = -1, upper = 0;
 };

@@ -13,9 +13,10 @@ namespace stats {
 enum class Design { OneSample, Paired, TwoSample };
 
 /// Power of Student's t-test for a standardised difference d (mean over the SD of the differences, or of a
-/// group): computed by the noncentral t, with the rejections in both tails. A non-inferiority or superiority
-/// test against a margin has this power with d = (difference - margin) / sd and a one-sided alternative. n
-/// (per group) may be a fraction. Refused: n <= 1 or above 1e7, alpha outside (0, 1), d not finite.
+/// group): computed by the noncentral t; a two-sided test counts the rejections in both tails. A
+/// non-inferiority or superiority test against a margin has this power with d = (difference - margin) / sd
+/// and a one-sided alternative. n (per group) may be a fraction. Refused: n <= 1 or above 1e7, alpha outside
+/// (0, 1), d not finite.
 Result<double> t_power(double n, double d, double alpha = 0.05, Design design = Design::Paired,
                        Alternative alternative = Alternative::TwoSided);
 

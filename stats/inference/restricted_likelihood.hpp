@@ -14,22 +14,22 @@ namespace stats {
 
 class RestrictedLikelihood {
  public:
-  /// `columns` (of X), y, `participant` and `thing` have one length. Participants and things may have any
-  /// numbers.
+  /// The columns of X, y, `participant` and `thing` have one length. Equal numbers in `participant` are one
+  /// participant, equal numbers in `thing` one thing.
   RestrictedLikelihood(std::span<const std::vector<double>> columns, std::span<const double> y,
                        std::span<const int> participant, std::span<const int> thing);
 
   /// The parts of the likelihood at one pair of lambdas, which are the standard deviations of the two random
-  /// effects, each divided by sigma. V is the covariance matrix of y divided by sigma^2,
-  /// and r = y - X beta.
+  /// effects, each divided by sigma. V is the covariance matrix of y divided by sigma^2, and r is y - X beta.
   struct At {
     std::vector<double> beta;                ///< the estimate by generalised least squares
     std::vector<double> inverse;             ///< (X' V^-1 X)^-1, row-major
     double residual = 0;                     ///< r' V^-1 r
     double log_determinants = 0;             ///< log |V| + log |X' V^-1 X|
     std::array<double, 2> slope{};           ///< derivatives of log_determinants with respect to each lambda
-    std::array<double, 2> residual_slope{};  ///< derivatives of `residual`
-    std::array<std::vector<double>, 2> inverse_slope;  ///< derivatives of `inverse`
+    std::array<double, 2> residual_slope{};  ///< derivatives of `residual` with respect to each lambda
+    std::array<std::vector<double>, 2> inverse_slope;  ///< derivatives of `inverse` with respect to each
+                                                       ///< lambda
   };
   /// Empty if X' V^-1 X is singular or the fit leaves no residual.
   std::optional<At> at(std::array<double, 2> lambda) const;

@@ -21,8 +21,8 @@ struct TTestOptions {
   Alternative alternative = Alternative::TwoSided;
   double confidence = 0.95;  ///< confidence of `ci` and of the effect size's interval
   double null_value = 0;     ///< mean (one sample) or difference of means under the null hypothesis
-  /// False leaves out the intervals of effect sizes (they become infinite). They take a thousand times as
-  /// long as the test, which matters in simulations.
+  /// False leaves out the intervals of effect sizes, whose ends become infinite. Simulations set it to false,
+  /// because these intervals take far longer than the test.
   bool effect_intervals = true;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Wilcoxon's signed-rank test. NaN = missing: dropped and counted. More than 2.5e7 pairs of values (7,070
-/// differences) are refused.
+/// Wilcoxon's signed-rank test. NaN = missing: dropped and counted. More than 7,070 differences, which have
+/// more than 2.5e7 pairs, are refused.
 
 #include <array>
 #include <cstddef>
@@ -13,8 +13,8 @@
 namespace stats {
 
 /// Exact p-values are conditional on the observed midranks, so they are valid with ties; without ties they
-/// equal the classical p-values. They are omitted beyond 1000 differences (zeros count for Pratt's version
-/// only), where the normal p-values suffice.
+/// equal the classical p-values. They are omitted beyond 1000 differences, where the normal p-values suffice;
+/// only Pratt's version counts zeros among these.
 struct SignedRank {
   std::size_t n = 0, n_nonzero = 0, n_missing = 0;
   double w_plus = 0, w_minus = 0;  ///< sums of midranks of |d|, zeros dropped (Wilcoxon 1945)
@@ -36,7 +36,7 @@ struct SignedRank {
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
   /// The probability that hodges_lehmann_ci covers the centre: at least the confidence, or 1 - 2^(1 - n) if n
   /// is too small for the confidence (below 6 at .95). Exact without ties and zeros; with them the coverage
-  /// is at least this probability (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
+  /// is at least this probability (Noether 1967, J. Am. Stat. Assoc. 62, 184-188). 0 without an interval.
   double hodges_lehmann_level = 0;
 };
 

@@ -257,7 +257,8 @@ std::vector<double> standardised(const OrdinalFit& fit, const OrdinalRows& rows)
   return at;
 }
 
-/// Start of the search: the fit without participants' effects, or zero effects if that fit was refused.
+/// Start of the search: thresholds and beta of the fit without participants' effects, or marginal thresholds
+/// and beta = 0 if that fit was refused; then a fixed sd.
 std::vector<double> start_of(const Result<OrdinalFit>& fixed, const OrdinalRows& rows, Link link) {
   auto start =
       fixed ? standardised(*fixed, rows) : marginal_thresholds(rows.category, rows.thresholds() + 1, link);

@@ -15,8 +15,8 @@ enum class Link { Logit, Probit };
 
 const char* link_name(Link link);  ///< "logit", "probit"
 
-/// Distribution function F, its density f and the density's first two derivatives at x; 0 or 1 and zeros at
-/// -+ infinity.
+/// Distribution function F, its density f and the density's first two derivatives f1 and f2 at x. At
+/// -infinity F is 0 and at +infinity F is 1; f, f1 and f2 are then 0.
 struct LinkValue {
   double F = 0, f = 0, f1 = 0, f2 = 0;
 };
@@ -54,7 +54,8 @@ struct OrdinalFit {
   Link link = Link::Logit;
   std::vector<double> levels;      ///< scores that occur, ascending; unused scores have no threshold
   std::vector<double> thresholds;  ///< one fewer than levels, ascending
-  std::vector<double> beta;        ///< coefficient of each predictor; larger = higher ratings
+  std::vector<double> beta;        ///< coefficient of each predictor; above 0: larger values go with higher
+                                   ///< ratings
   /// Covariance of thresholds, then beta; row-major, from the observed information.
   std::vector<double> covariance;
   double log_likelihood = 0;
@@ -85,7 +86,7 @@ enum class Separation {
 
 /// A fit with location x beta + s_p, where s_p ~ N(0, sd^2) is drawn once for each participant.
 struct MixedOrdinalFit : OrdinalFit {
-  double sd_participant = 0;  ///< >= 0; 0 = the likelihood is largest if participants do not differ
+  double sd_participant = 0;  ///< 0 or more; at 0 the likelihood is largest if participants do not differ
   int participants = 0;
   int points = 1;             ///< nodes of the quadrature; 1 is Laplace's approximation
   std::string why_penalised;  ///< the separation found; empty: maximum likelihood was used

@@ -16,7 +16,8 @@ namespace stats {
 /// each set has a win over the other.
 enum class Connection {
   Strong,     ///< finite maximum of the likelihood
-  Separated,  ///< connected, but some items never lose to the others: infinite strengths
+  Separated,  ///< all items are linked by comparisons, but some win or lose every comparison with the others:
+              ///< infinite strengths
   None,       ///< two groups of items were never compared with each other
 };
 struct ConnectionReport {
@@ -60,14 +61,15 @@ struct BradleyTerry {
   /// Degrees of freedom of errors over people (people_errors()). Empty if errors treat answers as
   /// independent.
   std::optional<double> people_df;
-  std::string why_independent;  ///< fits of single trials: why their errors are not over people
+  std::string why_independent;  ///< why a fit of single trials has the errors of independent answers; else
+                                ///< empty
   /// Wald's test of equal strengths with errors over people, as Hotelling's T2.
   struct PeopleTest {
     double f = 0, df1 = 0, df2 = 0, p = 0;
   };
   std::optional<PeopleTest> equal_over_people;
   double log_likelihood = 0;  ///< leaves out the binomial coefficients
-  /// Goodness of fit: deviance against one free proportion for each pair; p is empty if no df is left.
+  /// Goodness of fit: deviance against one free proportion for each pair; gof_p is empty if gof_df is 0.
   double gof_deviance = 0;
   int gof_df = 0;
   std::optional<double> gof_p;

@@ -241,7 +241,7 @@ Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const Log
   const auto n = static_cast<double>(people.size());
   CoefficientErrors out{Values(k * k, 0.0), n - 1};
   for (const auto& [person, score] : people) {
-    Values step(k, 0.0);  // how far this person's answers move the coefficients
+    Values step(k, 0.0);  // this person's contribution to the coefficients: inverse information times score
     for (std::size_t i = 0; i < k; ++i)
       for (std::size_t j = 0; j < k; ++j) step[i] += fit.variance(i, j) * score[j];
     for (std::size_t i = 0; i < k; ++i)

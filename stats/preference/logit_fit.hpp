@@ -74,7 +74,7 @@ CoefficientErrors independent_errors(const LogitFit& fit);
 /// Errors by the sandwich estimator with each person's answers as a cluster (Liang and Zeger 1986), times
 /// people / (people - 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one
 /// for each of `trials`. Refused: no more people than coefficients, since their answers then do not span the
-/// coefficients; people who answer so much alike that a coefficient has no error.
+/// coefficients; people who answer so much alike that a coefficient's variance over people is only rounding.
 Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const LogitRow> rows,
                                         std::span<const Comparison> trials);
 

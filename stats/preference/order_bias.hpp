@@ -32,16 +32,16 @@ struct OrderBias {
                        ///< interval
   double first_probability = 0.5;  ///< probability of choosing the first of two equal items
   std::array<double, 2> first_probability_ci{};
-  /// Change of the interval's bias per unit of position; positions are centred at their mean. Empty if all
-  /// positions are equal or the fit with it is separated.
+  /// Change of the interval's bias per unit of position; positions are centred at their mean. Empty if
+  /// fit_logit() refuses the model with this term, as when all positions are equal.
   std::optional<OrderTerm> drift{};
 };
 
-/// Estimates the order effects. Trials of one participant are correlated: Wald errors are over people,
-/// likelihood ratios treat all trials as independent. Refused: no trial, fewer than two items, items never
-/// compared, orders of showing that do not determine the bias towards an interval, separation (the reason
-/// says of which model). std::invalid_argument for an item outside [0, items), equal items, a position that
-/// is not finite, or a confidence outside (0, 1).
+/// Estimates the order effects. Trials of one participant are correlated: Wald errors are over people if
+/// people_errors() allows it; likelihood ratios treat all trials as independent. Refused: no trial, fewer
+/// than two items, items never compared, orders of showing that do not determine the bias towards an
+/// interval, separation (the reason says of which model). std::invalid_argument for an item outside [0,
+/// items), equal items, a position that is not finite, or a confidence outside (0, 1).
 Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, double confidence = 0.95);
 
 }  // namespace stats

@@ -56,7 +56,8 @@ class DirectModel {
   Result<DirectFit> fit_straight(std::span<const double> weights = {}) const;
 
  private:
-  static constexpr std::size_t terms = 6;  ///< 1, x, d, x d, x^2, d^2
+  static constexpr std::size_t terms = 6;  ///< 1, x, d, x d, x^2, d^2 with centred x = log mu and d = delta /
+                                           ///< delta_unit
   using Sums = TermSums<terms>;
   struct Place;
   Sums weighted(std::span<const double> weights) const;
@@ -86,7 +87,8 @@ struct DirectEstimate {
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are excluded, ascending
   int far_above = 0;                 ///< number of settings excluded as far above the curve
   int in_reach = 0;                  ///< number of nominal deltas at which the curve is within reach_margin
-  Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
+  Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< the recommended intervals
+                                                            ///< (docs/statistics.md)
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
   Result<FormTest> form = Refusal{"not computed"};  ///< test that log mu is a straight line in delta
@@ -103,12 +105,11 @@ struct DirectEstimate {
 /// frame rate is within reach.
 inline constexpr double reach_margin = 1.15;
 /// Settings above this multiple of the curve are excluded. Near the top of the scale the scores level off,
-/// and a quadratic fitted to these scores misses the level. With the exclusion, for a = 18 frames/s, b = 0.01
-/// s/frame and 40 people, the bias of a falls from 1.4 to 0.4 frames/s and its intervals cover the true a in
-/// 93 instead of 67 % of the cases.
+/// and a quadratic fitted to these scores misses the level. In simulated pilots with a = 18 frames/s and b =
+/// 0.01 s/frame the bias of a was -1.4 frames/s with and -0.5 without these settings (docs/statistics.md).
 inline constexpr double far_factor = 2.46;
 
-/// The result of within_reach().
+/// The settings that within_reach() keeps, and what it excludes.
 struct Reach {
   std::vector<PilotObservation> kept;
   std::vector<double> left_out;  ///< nominal deltas, ascending
@@ -118,11 +119,11 @@ struct Reach {
 
 /// Selects the settings that determine the curve. At a delta where the curve fitted to all settings lies
 /// outside the frame rates shown by more than reach_margin, the settings do not determine the curve and only
-/// bias it (without them the bias of b at a = 31 frames/s, b = 0.035 s/frame falls from 12 to 4 %). Such
-/// deltas are excluded. If fewer than three deltas are within reach, those with the smallest distance between
-/// curve and frame rates are kept as well, to make up three, so that a fit remains. Then the settings far
-/// above the curve fitted to the remaining settings are excluded, unless no fit is possible without them. If
-/// the fit to all settings is refused, everything is kept.
+/// bias it: with them the intervals held b in 67 % of simulated pilots with a = 31 frames/s, b = 0.035
+/// s/frame (docs/statistics.md). Such deltas are excluded. If fewer than three deltas are within reach, those
+/// with the smallest distance between curve and frame rates are kept as well, to make up three, so that a fit
+/// remains. Then the settings far above the curve fitted to the remaining settings are excluded, unless no
+/// fit is possible without them. If the fit to all settings is refused, everything is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
 /// Fits the settings that within_reach() keeps, with a jackknife-t and an expanded percentile bootstrap over

@@ -48,8 +48,8 @@ Candidate with_best_amplitude(const Scaled& data, double B) {
   return {num / den, B, residual_sum(data, num / den, B)};
 }
 
-/// Slope of log|v| on u over the values that have the sign of the sum of v. Each is weighted by v^2, the
-/// inverse of the variance of log|v|.
+/// Slope of log|v| on u over the values that have the sign of the sum of v. Each is weighted by w v^2, since
+/// the variance of log|v| is proportional to 1 / (w v^2).
 double log_linear_rate(const Scaled& data) {
   double balance = 0;
   for (const double v : data.v) balance += v;

@@ -49,8 +49,8 @@ inline constexpr double form_level = 0.05;
 inline constexpr double form_power = 0.80;
 
 /// Settings whose frame rate times this factor is below the curve are excluded from the test. Near the bottom
-/// of the scale the scores level off, and a surface fitted to them gives a bent curve (with these settings
-/// the test rejected 22 % of simulated exponentials with a = 30 frames/s, b = 0.03 s/frame).
+/// of the scale the scores level off, and a surface fitted to them has a bent curve, so the test would reject
+/// true exponentials too often.
 inline constexpr double far_below_factor = 2.46;
 
 /// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u = log

@@ -59,7 +59,8 @@ Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* o
 }
 
 /// Thresholds theta_j = c + t_j. The log gaps give t_j. c is chosen so that the expected rating E over the
-/// population of participants equals `level` at location 0. Also holds the terms of c's derivatives.
+/// population of participants equals `level` at location 0. `weight`, `total` and `by_sd` are terms of c's
+/// derivatives.
 struct Scale {
   std::vector<double> theta, weight;  ///< weight: -dE/dtheta_j
   double total = 0;                   ///< sum of the weights
@@ -115,7 +116,8 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
     const double value = likelihood.evaluate(scale.theta, location, p[Sd], slopes);
     std::fill(gradient.begin(), gradient.end(), 0.0);
     // Derivatives of the log-likelihood with respect to a shift of all thresholds (shift) and of those above
-    // gap j (above). weight_above is minus the derivative of the expected rating with respect to the latter.
+    // gap j (above). weight_above is minus the derivative of the expected rating with respect to a shift of
+    // the thresholds above gap j.
     double shift = 0, above = 0, weight_above = 0;
     for (const double g : slopes.thresholds) shift += g;
     for (std::size_t j = gaps; j-- > 0;) {

@@ -41,8 +41,8 @@ struct OrdinalPilotEstimate {
   std::vector<double> out_of_reach;  ///< nominal deltas excluded by the direct fit's rule
 };
 
-/// The fit within reach and its jackknife over participants: one fit more for each participant, about 0.1 s
-/// in all for the paper's pilot.
+/// The fit to the settings within reach (direct_fit.hpp) and its jackknife over participants, which takes one
+/// more fit for each participant.
 OrdinalPilotEstimate estimate_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean,
                                             double level, double confidence);
 

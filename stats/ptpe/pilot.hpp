@@ -16,7 +16,7 @@ namespace stats {
 struct PilotRating {
   int participant = 0;                ///< any number; equal numbers are one participant
   double mu = 0;                      ///< nominal mean frame rate of the setting, frames/s
-  double delta = 0;                   ///< nominal standard deviation
+  double delta = 0;                   ///< nominal standard deviation of the frame rate, frames/s
   double realised_mu = 0;             ///< harmonic mean frame rate as shown, N / sum(dt), frames/s
   double realised_mu_arithmetic = 0;  ///< arithmetic mean frame rate as shown, the mean of 1/dt, frames/s
   double realised_delta = 0;
@@ -70,9 +70,9 @@ class PilotTable {
 };
 
 /// The contour estimate: the contour of the mean scores is sampled along lines of constant delta one frame/s
-/// apart, then a exp(b delta) is fitted by least squares. These lines weigh all deltas equally. The contour's
-/// crossings with the grid's edges are few (5 to 9 in the pilot) and lie close together where the curve runs
-/// along a row, so one crossing more or less would change b.
+/// apart, then a exp(b delta) is fitted by least squares. The lines give all deltas equal weight. The
+/// contour's crossings with the grid's edges are not used instead: they are few and lie close together where
+/// the curve runs along a row, so that one crossing more or less would change b.
 Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level);
 
 /// Uncertainty of a and b from resampling the participants.

@@ -12,7 +12,7 @@
 namespace stats {
 
 /// The analysis plan's rules for reverse coders, drift and lapses, fixed before the data are seen. With all
-/// rules off, the three are reported and the ratings stay unchanged.
+/// rules off, reverse coders, drift and lapses are only reported, and the ratings stay unchanged.
 struct PilotRules {
   bool exclude_reverse_coders = false;
   bool model_drift = false;   ///< subtract the mean drift from the scores

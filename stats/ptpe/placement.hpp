@@ -46,9 +46,9 @@ struct PlacementRules {
   /// Number of first trials, which use the standard deviations between the smallest and the largest in turn.
   /// Without such trials the form of the contour cannot be checked, and estimate_direct() has no fit.
   int between = 3;
-  double bracket =
-      1.35;  ///< factor above or below the estimated contour at which a setting is sought; above 1
-  int most_of_one = 1000000;  ///< times that a setting is shown at most in a session
+  /// Ratio, above 1, of a wanted mean to the estimated contour, or of the contour to the mean.
+  double bracket = 1.35;
+  int most_of_one = 1000000;  ///< largest number of times that a setting is shown in a session
 };
 
 /// The placement of one session. Its state follows from the settings shown and the ratings given, so a
@@ -65,7 +65,7 @@ class Placement {
   /// scale.
   void add(int setting, int score);
 
-  /// Posterior of this person's a and b.
+  /// Summaries of the posterior of this person's a and b.
   GridEstimate a() const;
   GridEstimate b() const;
 

@@ -7,7 +7,7 @@
 /// S(x) is the mean of a rating that is x plus a normal error, rounded to a whole score and clamped to the
 /// scale. S(x0) is the level, e is delta minus its mean in tens of frames/s, and M is the geometric mean of
 /// the frame rates. The direct estimate (direct_fit.hpp) has no S: it follows the scores that level off at
-/// the ends of the scale, and its curve is up to half a standard error off. A quadratic in the square root
+/// the ends of the scale, so its curve is biased (docs/statistics.md). A quadratic in the square root
 /// approximates both scores that rise with the frame rate and scores that rise with its logarithm.
 
 #include <span>

@@ -45,12 +45,12 @@ struct Contour {
   int crossed_twice = 0;             ///< lines with two or more crossings: the scores are not monotone in mu
   int below_grid = 0;  ///< lines with every score above the level: the contour lies below the smallest mu
   int above_grid = 0;  ///< lines with every score below the level: the contour lies above the largest mu
-  int on_node = 0;     ///< lines without a crossing on which the score of a setting equals the level
+  int on_node = 0;     ///< lines without a crossing on which the score at a row equals the level
 };
 
 /// Finds where the scores cross the level along the given lines. It skips lines outside the grid's columns. A
 /// crossing lies between two neighbouring scores, one above and one below the level. A score equal to the
-/// level (to 1e-12) is not a crossing; its line is counted in on_node.
+/// level (to 1e-12) is not a crossing; a line that has such a score and no crossing is counted in on_node.
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas);
 /// Nominal deltas of the lines: from the first column on in steps of 1 frame/s, and the last column.
 std::vector<double> contour_lines(const ScoreGrid& grid);

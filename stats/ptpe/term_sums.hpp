@@ -11,8 +11,8 @@
 
 namespace stats {
 
-/// Solves A x = b for a row-major A of a size known at compile time; thousands of fits use it. Empty unless A
-/// is positive definite beyond rounding.
+/// Solves A x = b for a row-major A of a size known at compile time, by Cholesky factorisation. Empty unless
+/// A is positive definite beyond rounding.
 template <std::size_t N>
 std::optional<std::array<double, N>> solve_positive(std::array<double, N * N> a, std::array<double, N> b) {
   for (std::size_t c = 0; c < N; ++c) {
