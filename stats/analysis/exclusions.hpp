@@ -52,8 +52,8 @@ struct Exclusion {
 };
 
 /// All exclusions, ordered by participant, visit and position, whole visits first. A trial or visit is listed
-/// once, under the first rule that holds in the order of Exclusion::rule. `pairs`: the answers are chosen
-/// intervals, so repeats are compared by agreement.
+/// once, under the first rule that excludes it, in the order in which Exclusion::rule lists the rules.
+/// `pairs`: the answers are chosen intervals, so repeats are compared by agreement.
 std::vector<Exclusion> find_exclusions(std::span<const TrialRecord> trials,
                                        std::span<const CatchRecord> catches, const ExclusionRules& rules,
                                        bool pairs);

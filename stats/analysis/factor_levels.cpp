@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t most_count = std::numeric_limits<int>::max();
 
-/// p of the t test, or of the exact sign test in its place.
+/// p of the t test; if that is refused, of the exact sign test for equal values; empty without either.
 std::optional<double> p_of(const Result<OneSampleTTest>& test, const std::optional<Unanimous>& all_alike,
                            double null) {
   if (test) return test->p;

@@ -157,7 +157,8 @@ FamilyTest superiority(ScoreContrast contrast, const Family& family) {
   return {test, one_sided || better};
 }
 
-/// Tests the claim that a and b differ by less than the margin: two one-sided tests.
+/// Tests the claim that a and b differ by less than the margin, by two one-sided tests. Their larger p is
+/// doubled unless the hypothesis is one-sided.
 FamilyTest equivalence(ScoreContrast contrast, const Family& family) {
   const bool one_sided = family.out.one_sided;
   const double margin = contrast.margin;
@@ -181,7 +182,7 @@ FamilyTest equivalence(ScoreContrast contrast, const Family& family) {
   return {test};
 }
 
-/// Tests the claim that a is not worse than b by the margin.
+/// Tests the claim that a is not worse than b by the margin or more.
 FamilyTest non_inferiority(ScoreContrast contrast, const Family& family) {
   const bool one_sided = family.out.one_sided;
   const double worst = contrast.higher_is_better ? -contrast.margin : contrast.margin;

@@ -80,7 +80,7 @@ struct Hypothesis {
   int confirmed = 0;        ///< number of tests that hold
   int confirmed_holm = 0;   ///< number of tests that hold after Holm
   /// p of the whole claim: the largest p of its tests (after Holm if the plan decides by Holm); 1 if a test
-  /// is refused or its estimate lies in the other direction. Empty without any test.
+  /// has no p or its estimate lies in the other direction. Empty if no test has a p.
   std::optional<double> p_claim;
   std::optional<double> p_claim_of_six;  ///< p_claim as corrected by correct_over_claims()
   std::vector<HypothesisTest> tests;

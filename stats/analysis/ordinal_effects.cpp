@@ -41,7 +41,7 @@ MethodEffect effect_of(const MixedOrdinalFit& fit, std::size_t column, int metho
   return out;
 }
 
-/// Corrects p over the planned family.
+/// Corrects p over a family of `family` tests, which may be more than `effects`.
 void correct(std::vector<MethodEffect>& effects, std::size_t family) {
   std::vector<double> p;
   for (const MethodEffect& effect : effects) p.push_back(effect.p);

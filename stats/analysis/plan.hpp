@@ -51,9 +51,10 @@ struct ExclusionRules {
 /// How the tests of a hypothesis decide its verdict.
 enum class DecisionRule {
   /// The claim needs all of its tests, each at alpha, uncorrected; the claim's error is then at most alpha
-  /// (Berger 1982). The weaker claim that at least one test holds is made after Holm.
+  /// (Berger 1982). The weaker verdict PartlySupported needs at least one test that holds after Holm.
   IntersectionUnion,
-  Holm,  ///< each test must hold after Holm; bundles frozen before the key `decision` existed use this rule
+  Holm,  ///< each test must hold after Holm; preregistrations made before the key `decision` existed use this
+         ///< rule
 };
 
 /// The kind of tests of scores in Task 1.
@@ -66,8 +67,8 @@ enum class ScoreTests {
 enum class Directional {
   None,  ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
   All,   ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
-  Once,  ///< one-sided where once_one_sided is set; bundles frozen before the key `directional` existed use
-         ///< this rule
+  Once,  ///< one-sided where once_one_sided is set; preregistrations made before the key `directional`
+         ///< existed use this rule
 };
 
 enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };

@@ -1,7 +1,7 @@
 #pragma once
-/// Task 1's scores with one value for each participant, n_* (nominal number of particles) and method. A
-/// participant's scenes are averaged first, because pooling dependent answers as if independent gives false
-/// alarms.
+/// Scores of Task 1 (ratings) with one value for each participant, n_* (nominal number of particles) and
+/// method. A participant's scenes are averaged first, because pooling dependent answers as if independent
+/// gives false alarms.
 
 #include <span>
 #include <string>

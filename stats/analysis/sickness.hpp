@@ -18,7 +18,7 @@ namespace stats {
 struct SicknessChange {
   std::size_t n = 0;          ///< participants with both values
   std::size_t n_missing = 0;  ///< participants with only one of both values
-  /// Summaries of all values.
+  /// Summaries of all values, also of participants with only one of both.
   Result<Description> before = Refusal{"not computed"}, after = Refusal{"not computed"};
   Result<Description> change = Refusal{"not computed"};
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< interval of the mean change

@@ -1,5 +1,6 @@
 #pragma once
-/// Task 1: summaries of cells, comparisons of all pairs of methods within each n_*, omnibus tests.
+/// Task 1 (ratings): summaries of each method's scores, comparisons of all pairs of methods within each n_*,
+/// and omnibus tests.
 
 #include <optional>
 #include <string>
@@ -58,7 +59,7 @@ struct MethodComparison {
 /// Numbers of participants in the comparisons at one n_* (nominal number of particles).
 struct PairPeople {
   int n_star = 0;
-  std::size_t planned = 0;           ///< participants who were planned to judge a method
+  std::size_t planned = 0;           ///< participants with a planned trial of any method
   std::size_t any = 0, all = 0;      ///< participants who judged any method, and every method
   std::size_t fewest = 0, most = 0;  ///< smallest and largest number with both methods of a pair
   bool differ = false;               ///< true if a participant counts in one pair and not in another

@@ -17,7 +17,8 @@ namespace stats {
 /// Missing answers to one method of a pair.
 struct MissingAnswers {
   std::size_t missing = 0;  ///< participants without answers to the method, of those planned to judge both
-  double room = 0;          ///< points by which their expected answers can be worse within the scale
+  double room = 0;          ///< points by which the expected answers can become worse before they leave the
+                            ///< scale
   std::optional<double> shift;  ///< points by which these answers must be worse than expected to change the
                                 ///< decision; empty: no shift does, or unknown
   bool within_scale() const { return shift && *shift <= room; }

@@ -34,8 +34,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 void make_folder(const std::filesystem::path& folder);
 
 /// Path of a file or folder that ships with the project, e.g. "shaders/splat.comp" or
-/// "data/scenes/single_dam.toml": in $VIP_SHARE_DIR if that is set, else in <program>/../share/vip-lab if
-/// that folder exists (an installed program), else in the source tree. Does not check that the file exists.
+/// "data/scenes/single_dam.toml": in $VIP_SHARE_DIR if that is set, else in ../share/vip-lab beside the
+/// program's folder if that folder exists (an installed program), else in the source tree. Does not check
+/// that the file exists.
 std::filesystem::path resource(const std::string& relative);
 
 /// Returns a user's path as given if it exists, else resource(path) if `path` is relative and that file

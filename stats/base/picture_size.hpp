@@ -18,8 +18,8 @@ std::string size_words(PictureSize size);
 inline constexpr long long most_picture_pixels = 1LL << 25;
 
 /// Parses "1280x720", without spaces. base::Error, beginning with the option and the text, if the text is not
-/// a size, a side is out of range, or the picture would take too much memory; the message says how much
-/// memory.
+/// a size, a side is out of range, or the picture has more than most_picture_pixels; the message then says
+/// how much memory it would take.
 PictureSize parse_picture_size(const std::string& text, const std::string& option = "--size");
 
 }  // namespace base

@@ -52,7 +52,6 @@ std::string place_of(const std::string& file, const toml::source_region& region)
   return out.str();
 }
 
-/// A number as shown in messages.
 std::string shown(double value) {
   std::ostringstream out;
   out.precision(12);

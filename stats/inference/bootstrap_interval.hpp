@@ -58,7 +58,8 @@ Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const St
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              std::span<const int> indices, double confidence = 0.95);
 
-/// Statistics by name: mean, median (of the two middle values), var (divisor n - 1), dz (mean / sd).
+/// The mean; the median (the mean of the two middle values if their number is even); the variance, with
+/// divisor n - 1; and dz, the mean over the standard deviation.
 Statistic mean_statistic();
 Statistic median_statistic();
 Statistic variance_statistic();

@@ -35,7 +35,7 @@ std::array<double, 2> noncentrality_interval(double t, double df, double confide
 /// (sqrt(df/2) G((df-1)/2)) with the gamma function G, exact (Hedges 1981). df > 1.
 double hedges_factor(double df);
 
-/// Upper tail of Fisher's F, x >= 0.
+/// Upper tail of Fisher's F: P(F >= x), x >= 0, df1 and df2 above 0 (std::invalid_argument).
 double fisher_upper(double x, double df1, double df2);
 
 /// The deviance of a count x with expectation m > 0: x ln(x / m) + m - x, without cancellation; m at x = 0.

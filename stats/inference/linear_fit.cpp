@@ -100,7 +100,6 @@ Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& expon
   return out;
 }
 
-/// Rows without missing values.
 struct Rows {
   std::vector<std::vector<double>> columns;
   std::vector<double> y;

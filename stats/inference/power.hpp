@@ -47,8 +47,8 @@ struct BinomialPower {
   std::optional<int> k_critical_upper{}, k_critical_lower{};
 };
 
-/// The exact binomial test's power by enumeration. Refused: n < 1, above 1e9 or not whole, p0 or p1 outside
-/// [0, 1], alpha outside (0, 1).
+/// The exact binomial test's power, from critical counts found by bisection. Refused: n < 1, above 1e9 or not
+/// whole, p0 or p1 outside [0, 1], alpha outside (0, 1).
 Result<BinomialPower> binomial_power(double n, double p1, double p0 = 0.5, double alpha = 0.05,
                                      Alternative alternative = Alternative::TwoSided);
 

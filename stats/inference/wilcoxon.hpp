@@ -20,7 +20,8 @@ struct SignedRank {
   double w_plus = 0, w_minus = 0;  ///< sums of midranks of |d|, zeros dropped (Wilcoxon 1945)
   bool has_ties = false;           ///< among the |d| that are not zero
   double rank_biserial = 0;        ///< (w_plus - w_minus) / (w_plus + w_minus)
-  std::optional<double> p_exact, p_exact_less, p_exact_greater;  ///< two-sided: twice the smaller, at most 1
+  std::optional<double> p_exact, p_exact_less, p_exact_greater;  ///< p_exact is twice the smaller one-sided
+                                                                 ///< p, at most 1
   double p_normal = 0;              ///< two-sided, tie-corrected, with continuity correction
   double p_normal_uncorrected = 0;  ///< as p_normal, but without continuity correction
   /// The p to report: exact if there is one, else normal.

@@ -86,7 +86,8 @@ enum class Separation {
 
 /// A fit with location x beta + s_p, where s_p ~ N(0, sd^2) is drawn once for each participant.
 struct MixedOrdinalFit : OrdinalFit {
-  double sd_participant = 0;  ///< 0 or more; at 0 the likelihood is largest if participants do not differ
+  double sd_participant = 0;  ///< 0 or more; 0 if the model without differences between participants fits
+                              ///< best
   int participants = 0;
   int points = 1;             ///< nodes of the quadrature; 1 is Laplace's approximation
   std::string why_penalised;  ///< the separation found; empty: maximum likelihood was used

@@ -18,7 +18,6 @@ void require_lengths(std::size_t n, std::span<const Predictor> predictors,
   if (!equal) throw std::invalid_argument("ratings, predictors and participants differ in length");
 }
 
-/// Indices of rows without a NaN.
 std::vector<std::size_t> whole_rows(std::span<const double> ratings, std::span<const Predictor> predictors) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < ratings.size(); ++i) {

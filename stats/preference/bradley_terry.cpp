@@ -92,7 +92,6 @@ std::vector<LogitRow> pair_rows(const Wins& wins) {
   return rows;
 }
 
-/// Sets the strengths relative to the first item, the strengths that sum to 0, and the worths.
 void set_strengths(BradleyTerry& out, const LogitFit& fit) {
   out.lambda_ref1.assign(1, 0.0);
   out.lambda_ref1.insert(out.lambda_ref1.end(), fit.coefficients.begin(), fit.coefficients.end());
@@ -105,7 +104,6 @@ void set_strengths(BradleyTerry& out, const LogitFit& fit) {
   }
 }
 
-/// Sets the covariance and standard errors of the strengths relative to the first item.
 void set_covariance(BradleyTerry& out, const CoefficientErrors& errors) {
   const auto n = static_cast<std::size_t>(out.items);
   out.se_ref1.assign(n, 0.0);
@@ -116,7 +114,6 @@ void set_covariance(BradleyTerry& out, const CoefficientErrors& errors) {
   }
 }
 
-/// Sets the standard errors and intervals of the strengths that sum to 0.
 void set_centred(BradleyTerry& out, double quantile) {
   const auto n = static_cast<std::size_t>(out.items);
   const auto items = static_cast<double>(out.items);

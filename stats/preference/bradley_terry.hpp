@@ -56,7 +56,8 @@ struct BradleyTerry {
   std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
   std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0, and their standard errors
   std::vector<std::array<double, 2>> ci_sum0;  ///< Wald intervals
-  std::vector<double> se_sum0_independent;     ///< errors that treat answers as independent
+  std::vector<double> se_sum0_independent;     ///< standard errors of lambda_sum0 that treat answers as
+                                               ///< independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
   /// Degrees of freedom of errors over people (people_errors()). Empty if errors treat answers as
   /// independent.
