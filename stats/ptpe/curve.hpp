@@ -1,5 +1,7 @@
 #pragma once
-/// mu(delta) = a exp(b delta), with its intervals and bands over participants.
+/// The threshold curve mu(delta) = a exp(b delta): the mean frame rate mu that is just satisfactory at a
+/// standard deviation delta of the frame rate. This header also has the curve's intervals and bands over
+/// participants.
 
 #include <array>
 #include <span>
@@ -9,7 +11,7 @@
 
 namespace stats {
 
-/// log mu(delta) = log a + b delta.
+/// The curve as log mu(delta) = log a + b delta.
 struct Curve {
   double log_a = 0, b = 0;  ///< a in frames/s, b in s/frame
 
@@ -35,8 +37,8 @@ struct CurveSpread {
 
   double a_se() const;  ///< standard error of a: a times the standard error of log a
   double b_se() const;
-  /// The band at one delta: pointwise with Student's t; simultaneous after Working and Hotelling (1929) with
-  /// Hotelling's T^2 for the two coefficients.
+  /// The band at one delta. The pointwise interval uses Student's t; the simultaneous one, after Working and
+  /// Hotelling (1929), uses Hotelling's T^2 for the two coefficients.
   BandPoint band(double delta) const;
   /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): the relative
   /// uncertainty of the threshold frame rate.

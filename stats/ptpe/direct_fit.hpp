@@ -1,5 +1,6 @@
 #pragma once
-/// The direct estimate: a and b fitted directly to the ratings, without the contour of their means.
+/// The direct estimate of the curve mu = a exp(b delta) of mean frame rates mu over standard deviations delta
+/// (curve.hpp): a and b are fitted directly to the ratings, without the contour of their means.
 ///
 ///   E[score] = level + k u + m u delta + q u^2,   u = log mu - log a - b delta
 ///
@@ -91,7 +92,7 @@ struct DirectEstimate {
                                                             ///< (docs/statistics.md)
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
-  Result<FormTest> form = Refusal{"not computed"};  ///< test that log mu is a straight line in delta
+  Result<FormTest> form = Refusal{"not computed"};  ///< test that the curve is an exponential (form_test.hpp)
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 

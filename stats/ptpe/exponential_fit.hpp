@@ -1,5 +1,5 @@
 #pragma once
-/// Least squares of y = a exp(b x), the form of the PTPE contour (paper Eq. 11).
+/// Least squares of y = a exp(b x), the form of the threshold curve mu = a exp(b delta) (paper Eq. 11).
 
 #include <array>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
-/// Test that the threshold is an exponential: log mu = log a + b delta is tested against a curve with one
-/// more parameter.
+/// Test that the threshold frame rate mu is an exponential of the frame rate's standard deviation delta: log
+/// mu = log a + b delta is tested against a curve with one more parameter c.
 ///
 ///   log mu(delta) = log a + b delta + c (e^2 - 1/2),   e = (delta - middle) / half
 ///

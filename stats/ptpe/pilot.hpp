@@ -1,6 +1,6 @@
 #pragma once
-/// The PTPE pilot: ratings of settings (mu, delta) by participants, and the fit of a exp(b delta) to their
-/// contour.
+/// The pilot study for the PTPE (ptpe.hpp): ratings of settings (mu, delta), which are the mean and the
+/// standard deviation of the frame rate, and the fit of mu = a exp(b delta) to a contour of the mean ratings.
 
 #include <array>
 #include <cstddef>
@@ -33,7 +33,7 @@ struct PilotObservation {
   double nominal_mu = 0;     ///< nominal mu of the setting; equal numbers form one row of the grid
 };
 
-/// Which realised mean frame rate is used as mu of a setting.
+/// The mean of the frame rates shown that is used as mu of a setting.
 enum class PilotMean { Harmonic, Arithmetic };
 
 /// Ratings by participant and setting. A participant's repeated ratings of a setting are averaged first, so

@@ -1,5 +1,5 @@
 #pragma once
-/// Reasons why a pilot's fit, although it was computed, must not be used by a solver.
+/// Reasons why a solver must not use a pilot's fit although the fit was computed.
 
 #include <optional>
 #include <span>

@@ -9,7 +9,8 @@ namespace stats {
 struct PtpeModel {
   double a = 23.68;
   double b = 0.02;
-  FpsMean mean = FpsMean::Harmonic;  ///< which mean frame rate mu was in the fit; the paper does not say
+  FpsMean mean = FpsMean::Harmonic;  ///< which mean of the frame rate mu was in the fit; the paper does not
+                                     ///< state it
 };
 
 /// mu(delta) = a exp(b delta): the frame rate that is just satisfactory at a standard deviation delta (both

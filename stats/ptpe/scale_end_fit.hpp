@@ -1,6 +1,6 @@
 #pragma once
-/// mu(delta) = a exp(b delta) from a model of the bounded rating scale. It gives the bands of the solver's
-/// file.
+/// Estimates the threshold curve mu(delta) = a exp(b delta) by a model of the bounded rating scale. The bands
+/// in the solver's file come from this estimate.
 ///
 ///   E[score] = S(x),   x = x0 + k u + m u e + q u^2,   u = (sqrt(mu) - sqrt(a exp(b delta))) 2 / sqrt(M)
 ///

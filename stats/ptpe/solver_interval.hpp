@@ -1,5 +1,5 @@
 #pragma once
-/// Uncertainty of the a and b that a solver uses.
+/// Uncertainty of a and b of the threshold curve mu = a exp(b delta) that a solver uses.
 
 #include <array>
 
