@@ -114,8 +114,9 @@ void Actions::suggest(bool eye_gaze) const {
       if (!device.menu.empty()) bindings.push_back({menu_, hand + device.menu});
       if (!device.stick.empty()) bindings.push_back({stick_, hand + device.stick});
     }
-    if (device.menu
-            .empty()) {  // left and right have different buttons; the system may reserve the left menu button
+    if (device.menu.empty()) {
+      // The Touch controllers have no menu button with one name on both hands. The runtime may reserve the
+      // menu button of the left one.
       bindings.push_back({menu_, "/user/hand/left/input/y/click"});
       bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }

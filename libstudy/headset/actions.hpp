@@ -10,9 +10,9 @@
 
 namespace study {
 
-/// OpenXR's actions of one session. The constructor sets them up in the order that the specification
-/// requires: actions, suggested bindings, attachment to the session, spaces. read() synchronises their
-/// states.
+/// OpenXR's actions of one session. The constructor makes the actions, suggests their bindings, attaches them
+/// to the session and makes the spaces of their poses. The specification requires suggestions before the
+/// attachment.
 class Actions {
  public:
   Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze);
@@ -20,8 +20,8 @@ class Actions {
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  /// Sets out.focused and, if it is true, reads gaze and hands at `time` into `out`, with poses in `world`.
-  /// Call it while the session is focused.
+  /// Synchronises the actions with the runtime and sets out.focused. If out.focused is true, also reads gaze
+  /// and hands at `time` into `out`, with poses in `world`. Call read() only in the state Focused.
   void read(const Space& world, XrTime time, HeadsetInput& out);
 
  private:

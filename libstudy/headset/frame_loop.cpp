@@ -168,8 +168,8 @@ bool FrameLoop::poll() {
   events_.insert(events_.end(), events.begin(), events.end());
   for (const HeadsetEvent& event : events) {
     using Kind = HeadsetEvent::Kind;
-    // The events that EventsLost stands for may include a move of the world's origin. The at_ns of EventsLost
-    // is -1, so the move takes effect at the next slot.
+    // The lost events may include a move of the world's origin, so EventsLost counts as a move. Its at_ns is
+    // -1, so this move takes effect at the next slot.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
@@ -198,7 +198,7 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   const HeadsetSlot& slot = record.slot;
   const RateMeter& meter = session_->meter();
   HeadsetRate rate{facts_.rate.reported_hz, meter.hz()};
-  // Reads the reported rate only once the measured rate has settled: before, the reported rate may be wrong.
+  // The reported rate is read when the measured rate settles, because it may be wrong before.
   if (rate.measured_hz && !facts_.rate.measured_hz) rate = session_->rate();
   HeadsetLayers out;
   {
@@ -266,7 +266,7 @@ void FrameLoop::turn() {
   if (drive_ == SlotDrive::Caller) {
     const auto since = std::chrono::steady_clock::now();
     while (!turn_slot()) {
-      if (!events_.empty()) return;  // an event may explain why no more slots come
+      if (!events_.empty()) return;  // an event may tell the caller why no slots come
       if (std::chrono::steady_clock::now() - since > most_idle)
         throw base::Error("headset", "it has run no frame for 30 s: it is not worn, or its software hangs",
                           "put it on, or restart its software; vip-study resume continues a session");
@@ -276,7 +276,7 @@ void FrameLoop::turn() {
   }
   std::unique_lock held(mutex_);
   changed_.wait_for(held, slot_wait, [this, before = slots_] { return slots_ > before || error_; });
-  // Throws only after the caller took the events: they explain the error better.
+  // Throws after the caller took the events, because an event may explain why the slot thread failed.
   if (error_ && events_.empty()) std::rethrow_exception(error_);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-/// Runs the slots (frames) of a headset one after the other, on the caller's thread or on a thread of its
-/// own.
+/// Runs the slots (frames) of a headset one after the other, on the caller's thread or on a separate thread.
 
 #include <condition_variable>
 #include <cstdint>
@@ -37,7 +36,9 @@ struct HeadsetRecord {
   HeadsetSlot slot;
   EyeViews views;  ///< predicted poses of the eyes at slot.predicted_ns
   HeadsetInput input;
-  int world = 0;  ///< number of moves of the poses' origin so far; a new session counts as one
+  /// Changes whenever the poses' origin may have moved: at a recentring, after lost events, and with a new
+  /// session.
+  int world = 0;
   std::optional<HeldViews> shown{};  ///< eye views of the shown picture; none: no picture
 };
 
@@ -45,8 +46,8 @@ struct HeadsetRecord {
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
-  /// True: the predicted times of the slots convert to the session's clock, ascend, and are multiples of the
-  /// period apart.
+  /// True: the session's predicted times convert to the session's clock, and all steps between predicted
+  /// times so far were positive and within a tenth of a period of a whole number of periods.
   bool trusted = false;
   int world = 0;  ///< as HeadsetRecord::world
   HeadsetSlot last;
@@ -64,8 +65,8 @@ struct SeenNow {
 /// the session's errors: base::Error, HeadsetLost.
 ///
 /// If the runtime loses the session, SessionMaker makes a new session. Events report the loss and the new
-/// session; no slots come in between. When the session is lost or the world's origin moves, the slots are
-/// black until another picture is shown.
+/// session; no slots come in between. When the session is lost or the world's origin moves, picture and page
+/// disappear, and the slots are black until another picture or page is shown.
 class FrameLoop {
  public:
   /// Largest number of stored records, enough for the slots of more than a minute.
@@ -86,7 +87,8 @@ class FrameLoop {
   /// As next_ns(). If a thread runs the slots, the time also advances with the system's clock between two
   /// slots.
   std::int64_t now_ns() const;
-  /// Runs a slot. With SlotDrive::Thread, waits for the next slot instead, 0.1 s at most.
+  /// SlotDrive::Caller: runs a slot, or returns without a slot if an event waits for take_events();
+  /// base::Error if no slot runs for 30 s. SlotDrive::Thread: waits for the next slot, 0.1 s at most.
   void turn();
   /// Refresh period of the display, ns; 0 before any slot.
   std::int64_t period_ns() const;
@@ -98,9 +100,10 @@ class FrameLoop {
   /// The canvas to draw the next picture of both eyes into, side by side as in HeadsetLayers. Call it for
   /// each picture.
   const sim::Offscreen& canvas();
-  /// Shows the canvas from the slot nearest to due_ns, or a later one if that slot is over, until another
-  /// picture is shown or clear() is called. Waits until the picture is shown and returns its first slot. If
-  /// it cannot be shown, stops waiting; take_unseen() then gives the cause.
+  /// Shows the canvas from the slot nearest to due_ns, or from the next slot if that one is over, until
+  /// another picture is shown or clear() is called; after 2 s the picture fades to black. Waits until the
+  /// picture is shown and returns its first slot. If the picture cannot be shown, returns a slot with
+  /// predicted_ns = due_ns, and take_unseen() returns the cause.
   HeadsetSlot show(const HeldViews& from, std::int64_t due_ns);
   void clear();
   /// page() and show_page() do for the page what canvas() and show() do for the picture, but do not wait.
@@ -109,7 +112,7 @@ class FrameLoop {
   void show_page(const HeadsetPage& place);
   void hide_page();
 
-  /// Events, and records of finished slots, since the last call. Beyond most_records records, the older half
+  /// Events, or records of slots, since the last call. When most_records records are stored, the oldest half
   /// of them is dropped.
   std::vector<HeadsetEvent> take_events();
   std::vector<HeadsetRecord> take_records();
@@ -151,7 +154,7 @@ class FrameLoop {
   std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< indexed by PictureTurns
   bool onlooker_ = false;
 
-  mutable std::mutex mutex_;  ///< guards everything below
+  mutable std::mutex mutex_;  ///< guards the members below, except thread_
   std::condition_variable changed_;
   PictureTurns picture_turns_, page_turns_;
   HeldViews shown_from_, waiting_from_;
@@ -166,7 +169,7 @@ class FrameLoop {
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move
   LoopFacts facts_;
   std::int64_t slots_ = 0;           ///< number of slots begun
-  std::int64_t last_system_ns_ = 0;  ///< time at which the last slot began, on the system's clock
+  std::int64_t last_system_ns_ = 0;  ///< time at which the last slot was recorded, on the system's clock
   std::vector<HeadsetEvent> events_;
   std::vector<HeadsetRecord> records_;
   std::exception_ptr error_;  ///< error that ended the slot thread

@@ -127,7 +127,7 @@ std::int64_t HeadsetDisplay::first_onset(std::int64_t earliest_ns) const {
   return next_ns + (ahead_ns + period_ns - 1) / period_ns * period_ns;
 }
 
-/// Time before its slot at which drawing a picture begins, ns; 0 with SlotDrive::Caller.
+/// Time from the start of drawing a picture to the picture's slot, ns; 0 with SlotDrive::Caller.
 std::int64_t HeadsetDisplay::lead_ns() const {
   return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
 }
@@ -149,7 +149,8 @@ void HeadsetDisplay::poll_requests() {
     if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, CutCause::SessionLost);
     if (event.kind == Kind::Refresh && !new_session_) {
       refresh_hz_ = nominal_refresh(event.to_hz);
-      // Cuts also between pictures: the intervals of the current trial are those of the old rate.
+      // Noted also while no stimulus is shown: the schedule of the current trial has the old rate's
+      // intervals.
       note_cut(spoilt_, CutCause::Rate);
     }
     if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
@@ -217,7 +218,7 @@ void HeadsetDisplay::render(Stimulus& stimulus) {
   pending_ = &stimulus;
   if (playing_) return;
   if (!focused()) note_cut(spoilt_, cause_of(new_session_ ? HeadsetState::LossPending : facts().state));
-  // Measures the drawing time with the first picture, which takes longest: lead_ns() depends on it.
+  // Measures the drawing time, on which lead_ns() depends, with the first picture, which takes longest.
   if (slots_by_thread_) draw(loop_.next_ns());
 }
 

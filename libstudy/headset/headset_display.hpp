@@ -61,8 +61,7 @@ class HeadsetDisplay final : public Display {
   /// Records of finished slots since the last call. Beyond FrameLoop::most_records records, the older half of
   /// them is dropped.
   std::vector<HeadsetRecord> take_records();
-  /// Waits for the next slot, then returns the records as take_records() does; empty if no slot came within
-  /// 0.1 s.
+  /// Calls turn(), then returns take_records().
   std::vector<HeadsetRecord> next_records();
   /// As take_records(), but for the code that records the session. Each of the two functions returns every
   /// record once.
@@ -99,7 +98,7 @@ class HeadsetDisplay final : public Display {
   FrameLoop loop_;
   Stimulus* pending_ = nullptr;  ///< stimulus of the last render(), which present() draws
   double refresh_hz_ = 0;
-  std::int64_t draw_ns_ = 0;  ///< recent drawing time; 0: nothing drawn, or SlotDrive::Caller
+  std::int64_t draw_ns_ = 0;  ///< largest recent drawing time; 0: nothing drawn, or SlotDrive::Caller
   std::vector<HeadsetRecord> for_pages_, for_record_;
   std::vector<std::string> news_;
   std::optional<CutCause> spoilt_;  ///< why the rest of the showing is black

@@ -58,8 +58,8 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
 };
 
 /// The gaze sample of a slot; its ray is in the head's frame. Not valid if the orientation of the head is not
-/// valid or, for a tracker, that of the eyes. The point is in the picture shown to the left eye; none without
-/// a picture.
+/// valid or, for a tracker, that of the eyes. The sample's point is in the picture shown to the left eye;
+/// none without a picture, or if the gaze points behind the picture's eye.
 GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin);
 
 /// Distance between the eyes, mm; none if their poses are not valid or their positions are equal.

@@ -46,7 +46,7 @@ const char* name_of(HeadsetState state) {
   return names[static_cast<std::size_t>(state)];
 }
 
-/// The parts of a session. They are constructed in this order and destroyed in reverse.
+/// The parts of a session, in the order of their construction: each may use those above it.
 struct HeadsetSession::Parts {
   Parts(const sim::GlContext& gl, const HeadsetChoice& choice)
       : patience(static_cast<std::int64_t>(choice.patience_s * 1e9)),
@@ -93,7 +93,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
   const auto answer = std::make_shared<Answer>();
   answer->frame.type = XR_TYPE_FRAME_STATE;
   const auto call = xr.function<PFN_xrWaitFrame>("xrWaitFrame");
-  // Runs the call on another thread. This is safe: xrWaitFrame uses no OpenGL context.
+  // xrWaitFrame may never return, so another thread calls it. The call needs no OpenGL context.
   const bool back = watched.run(
       [answer, call, handle = session.get()] {
         XrFrameWaitInfo info{};

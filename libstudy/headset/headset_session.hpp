@@ -68,14 +68,14 @@ struct HeadsetHands {
 /// The participant's input: gaze, head pose, buttons and pointing.
 struct HeadsetInput {
   HeadsetPose head;
-  bool focused = false;             ///< the following members are set only while focused
+  bool focused = false;             ///< the session has the input focus; gaze and hands are set only then
   std::optional<HeadsetGaze> gaze;  ///< none: no tracker, or no data now
   HeadsetHands hands;
 };
 
 struct HeadsetChoice {
-  bool eye_gaze = false;                      ///< requests eye tracking; needs the participant's consent
-  double patience_s = 10;                     ///< longest wait for a frame, s; then base::Error
+  bool eye_gaze = false;   ///< requests eye tracking; needs the participant's consent
+  double patience_s = 10;  ///< longest wait for a frame, an image or a new session, s; then base::Error
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< refresh rate to request; see request_rate()
   /// If the runtime's times do not convert to the session's clock, the first guessed time is not before
@@ -87,7 +87,7 @@ struct HeadsetChoice {
 /// content.
 struct HeadsetSlot {
   std::int64_t index = 0;         ///< from 0
-  std::int64_t predicted_ns = 0;  ///< predicted display time on the session's clock
+  std::int64_t predicted_ns = 0;  ///< predicted display time on the session's clock; -1: invalid time
   std::int64_t period_ns = 0;     ///< period that the runtime reports; often wrong at first
   bool should_render = false;     ///< false: a picture would not be visible
   std::int64_t runtime_time = 0;  ///< predicted_ns on the runtime's clock
@@ -131,14 +131,15 @@ struct HeadsetRate {
 
 /// One session of an OpenXR runtime, from connecting to disconnecting. Calls come from the thread on which
 /// `gl` is current, except views_at() and views_in_head(). Another thread may take over between two calls,
-/// together with the context. Calls throw base::Error for missing parts and failed calls, and HeadsetLost
-/// (loader.hpp) once the session or the runtime is gone.
+/// together with the context. Calls throw base::Error if an OpenXR call fails, and HeadsetLost (loader.hpp)
+/// once the session or the runtime is gone.
 ///
 /// Run frames while running() is true. For each frame call wait(), begin(), then views(), input() and
 /// drawing, then end(). Call poll() between frames.
 class HeadsetSession {
  public:
-  /// Connects. base::Error for a headset that cannot hide the real world.
+  /// Connects. base::Error if the loader, the runtime or the headset is missing, or if the headset cannot
+  /// hide the real world.
   explicit HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& choice = {});
   ~HeadsetSession();
   HeadsetSession(const HeadsetSession&) = delete;
@@ -156,7 +157,7 @@ class HeadsetSession {
   std::vector<HeadsetEvent> poll();
   void request_exit();
 
-  /// Sleeps until the next slot (frame) may begin.
+  /// Sleeps until the next slot (frame) may begin. base::Error after HeadsetChoice::patience_s.
   HeadsetSlot wait();
   void begin(const HeadsetSlot& slot);
   /// Predicted eye views at the slot's display time. Draw only if can_be_shown() is true for them.

@@ -13,9 +13,10 @@ namespace {
 
 /// Distance of the targets, m: about the focal distance of headsets' lenses.
 constexpr double distance_m = 2;
-constexpr double size_deg = 1, dot_share = 0.2;  ///< width of a target; width of its dot / this width
-/// Longest call of check() after which the samples still count, ns. A longer call means that the participant
-/// read another page meanwhile.
+/// Visual angle of a target's width; width of the black dot divided by the width of the target.
+constexpr double size_deg = 1, dot_share = 0.2;
+/// Longest call of check() after which the samples still count, ns. A longer call means that check() showed
+/// the participant another page.
 constexpr std::int64_t most_checking_ns = 200'000'000;
 constexpr int most_turns = 200;  ///< slots to wait for a valid head pose
 

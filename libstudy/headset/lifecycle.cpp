@@ -49,7 +49,7 @@ void Lifecycle::enter(XrSessionState state, std::vector<HeadsetEvent>& out) {
     running_ = false;
     session_.call<PFN_xrEndSession>("xrEndSession", session_.get());
   }
-  // The session is destroyed next: it must not wait for another frame.
+  // In these states the specification requires that the session is destroyed, so no more frames run.
   if (state_ == HeadsetState::LossPending || state_ == HeadsetState::Exiting) running_ = false;
   out.push_back({.kind = HeadsetEvent::Kind::State, .state = state_});
 }

@@ -25,8 +25,8 @@ std::string name_of(XrResult result) {
   }
 }
 
-/// Opens the OpenXR loader: $VIP_OPENXR_LOADER, or the system's if the variable is empty. The library is
-/// never closed, because runtimes may leave running threads behind.
+/// Opens the OpenXR loader: $VIP_OPENXR_LOADER, or the system's if the variable is unset or empty. The
+/// library is never closed, because runtimes may leave running threads behind.
 PFN_xrGetInstanceProcAddr open_loader() {
   const char* other = std::getenv("VIP_OPENXR_LOADER");
   const std::string library = other && *other ? other : "libopenxr_loader.so.1";

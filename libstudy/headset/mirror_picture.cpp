@@ -66,8 +66,9 @@ bool MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   return true;
 }
 
-/// Draws the picture in strips, with a pause after each. A device draws for one context at a time, and
-/// software OpenGL is slow: a slot then waits for one strip at most.
+/// Draws the picture in strips, with a pause after each. A GPU draws for one context at a time, and software
+/// OpenGL is slow, so the headset's slots would wait for a whole picture. With strips they wait for one strip
+/// at most.
 void MirrorPicture::draw_in_strips() {
   glEnable(GL_SCISSOR_TEST);
   for (int y = 0; y < side_px; y += strip_px) {

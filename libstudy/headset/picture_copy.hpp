@@ -21,7 +21,7 @@ std::string gl_format_name(std::int64_t format);
 /// The part of a picture to copy, and its brightness.
 struct PicturePart {
   int x_px = 0;     ///< left edge of the part
-  float light = 1;  ///< factor on the levels, [0, 1]
+  float light = 1;  ///< factor on the sRGB levels, [0, 1]
   bool operator==(const PicturePart&) const = default;
 };
 struct CopyTarget {
@@ -42,7 +42,7 @@ class PictureCopy {
   void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:
-  bool same_words_;  ///< the format is that of the pictures: copying needs no shader
+  bool same_words_;  ///< the format is that of the pictures: a copy with light = 1 needs no shader
   sim::GlProgram program_;
   unsigned vertices_ = 0;
 };

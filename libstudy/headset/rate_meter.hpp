@@ -14,8 +14,9 @@ struct RateChange {
 /// Measures the refresh rate from the steps between predicted times of slots, because runtimes report wrong
 /// periods at first, jitter, and leave slots out. The number of periods in a step is its ratio to the
 /// shortest step of which most others are multiples, rounded. The period is the sum of the steps divided by
-/// the sum of these numbers. The first 8 steps after frames begin do not count. dropped() and off_grid() do
-/// not count steps during a change of the rate.
+/// the sum of these numbers. The first 8 steps after frames begin do not count. During a change of the rate,
+/// dropped() and off_grid() count steps by the old rate; these counts are subtracted when the change is
+/// detected.
 class RateMeter {
  public:
   /// Adds the predicted time of the next slot. Returns the change of the rate once it has settled at another

@@ -18,11 +18,11 @@ namespace {
 constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
 /// A study's key XOR this constant is the key of the random numbers for the interaction of person and method.
-/// They are thus independent of the random numbers for persons and trials.
+/// They are thus independent of the random numbers for persons and trials. Each method uses two of them.
 constexpr std::uint64_t by_method_key = 0x6d6574686f64;
 
-/// Random numbers of one participant, by index: 0 to 9 belong to the person, the following ten to the trial
-/// at position 0, the next ten to the trial at position 1, and so on.
+/// Random numbers of one participant, by index: 0 to 9 are those of the person, 10 to 19 those of the trial
+/// at position 0, 20 to 29 those of the trial at position 1, and so on.
 class Draws {
  public:
   Draws(std::uint64_t key, int participant)
@@ -32,7 +32,7 @@ class Draws {
   double uniform(const ShownTrial& trial, int which) const { return uniform_of(key_, counter(trial, which)); }
 
  private:
-  /// Index of a trial's random number. A participant's trials differ in their position.
+  /// Index of a trial's random number.
   static std::uint64_t counter(const ShownTrial& trial, int which) {
     return 10 * (static_cast<std::uint64_t>(trial.position) + 1) + static_cast<std::uint64_t>(which);
   }

@@ -28,16 +28,16 @@ struct Task1Scatter {
 };
 
 /// Scatter for which the difference between two methods' answers has the requested standard deviation, as
-/// long as no answer is cut off at an end of the scale. The variance from rounding, 1/12 per answer
-/// (Sheppard), is included. base::Error if rounding and the interaction of person and method alone exceed
-/// the requested standard deviation.
+/// long as no answer is cut off at an end of the scale. With AnswerScale::Likert, this includes the variance
+/// from rounding, 1/12 per answer (Sheppard). base::Error if rounding and the interaction of person and
+/// method alone exceed the requested standard deviation, or if the protocol lacks a question of Task 1.
 Task1Scatter task1_scatter(const PowerRequest& request);
 
 struct Task1Answers {
   std::vector<stats::MethodScore> realism, sickness;  ///< scores, ordered by participant
 };
 
-/// Simulates the answers to these trials. An answer depends on the key and its trial and not on other trials.
+/// Simulates the answers to these trials. An answer does not depend on the other trials.
 Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors& factors,
                           const Scenario& truth, const Task1Scatter& scatter, std::uint64_t key);
 
@@ -54,7 +54,8 @@ struct RealisedSetting {
 /// schedule does not change its moments.
 std::vector<RealisedSetting> realised_settings(const Protocol& protocol);
 
-/// Range of the scale's scores. `level`: mean score of the observer on its curve mu = a exp(b delta).
+/// Range of the scale's scores. `level`: mean score of the observer on its curve mu = a exp(b delta), where
+/// mu is the harmonic mean and delta the standard deviation of the frame rate.
 struct RatedScale {
   int min = 1, max = 7;
   double level = 4;

@@ -1,7 +1,7 @@
 #pragma once
-/// Power for a protocol that shows pairs and has effects as a factor. The test is of the preference for a
-/// level of effects over level none in pairs that differ in nothing else. It is the test of the report's
-/// table of factors (stats/analysis/factor_levels.hpp).
+/// Power for a protocol that shows pairs and has effects as a factor. Each test compares one level of effects
+/// with level none, in pairs that differ in nothing else: is the level preferred? The report's table of
+/// factors has the same test (stats/analysis/factor_levels.hpp).
 
 #include <span>
 #include <string>

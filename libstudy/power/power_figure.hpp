@@ -7,8 +7,8 @@
 
 namespace study {
 
-/// Task 1 and 2: a panel for each hypothesis with a line for each world. Pilot: a panel for a and one for b,
-/// with half widths of intervals and the true standard error.
+/// Returns an SVG picture. Task 1 and 2: a panel for each hypothesis with a line for each world. Pilot: a
+/// panel for a and one for b, with the half widths of the intervals and the true standard error.
 std::string power_svg(const Json& json);
 
 }  // namespace study

@@ -36,8 +36,8 @@ bool has_question(const Protocol& protocol, const std::string& id) {
                      [&](const auto& question) { return question.second->id == id; });
 }
 
-/// base::Error if the protocol neither varies effects nor tests one of the plan's hypotheses about methods:
-/// worlds exist for these only.
+/// base::Error if the protocol neither varies effects nor tests one of the plan's hypotheses about methods,
+/// because worlds exist for effects and for these hypotheses only.
 void check_claims(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.effects.empty()) return;
   const auto shown = hypotheses_of(protocol, plan);

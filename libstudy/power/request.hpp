@@ -17,8 +17,8 @@ namespace study {
 enum class PowerKind { Task1, Task2, Pilot };
 /// Name in JSON: "task1", "task2", "pilot".
 const char* power_kind_name(PowerKind kind);
-/// base::Error unless the protocol is a pilot, tests one of the plan's hypotheses about methods, or shows
-/// pairs that vary effects.
+/// base::Error unless the protocol is a pilot, shows pairs that vary effects, or tests one of the plan's
+/// hypotheses about methods: by pairs, or by the questions of Task 1.
 PowerKind power_kind(const Protocol& protocol, const stats::AnalysisPlan& plan = {});
 
 /// The answers that simulated people give in Task 1.
@@ -57,7 +57,8 @@ struct PowerRequest {
   PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: simulated observer; default: the paper's PTPE@4.0
   std::string question = {};         ///< Pilot: id of the scale; empty: the first that the trials ask
   std::optional<double> level = {};  ///< Pilot: score at which the curve is fitted; empty: see level_of()
-  std::optional<double> precision_a, precision_b;  ///< requested half widths: frames/s, s/frame
+  /// Pilot: requested half widths of the intervals of a (frames/s) and b (s/frame).
+  std::optional<double> precision_a, precision_b;
 };
 
 /// rated_question() is the scale on which a simulated pilot is rated, rated_level() the score at which its
@@ -67,8 +68,8 @@ Question rated_question(const PowerRequest& request);
 double rated_level(const PowerRequest& request);
 
 /// Shares estimated by the mixed models of Task 1 in an earlier study. `results`: JSON file of `vip-stats
-/// report` or `vip-stats task1`. base::Error if it lacks these models, or if no participant judged one method
-/// at two n_*.
+/// report` or `vip-stats task1`. base::Error if it lacks these models, if no participant judged one method at
+/// two n_*, or if the answers do not vary.
 PersonByMethod person_by_method_of(const std::filesystem::path& results);
 
 /// Reads numbers of participants from "26", "10:60" (step 1) or "10:60:5" (step 5). base::Error for another

@@ -30,16 +30,14 @@ struct PowerCell {
 /// The cell in words: "26 participants, studies 1 to 192".
 std::string to_text(const PowerCell& cell);
 
-/// All cells of a request, sorted by n and study. A cell simulates about 100,000 participants in at most
-/// 10,000 studies; about 5,000 participants if the plan uses the mixed model, which is slower. So a cell
-/// takes a few minutes at most.
+/// All cells of a request, sorted by n and study. A cell simulates at most 100,000 participants in at most
+/// 10,000 studies; at most 5,000 participants if the plan uses the mixed model, which is slower.
 std::vector<PowerCell> power_cells(const PowerRequest& request);
 
 /// Outcomes of simulated studies: counts for Task 1 or 2, estimates for a pilot.
 using StudyOutcomes = std::variant<TaskCounts, PilotOutcomes>;
 
-/// Simulates `studies` with each number of participants. A study's outcome does not depend on the process or
-/// on other studies.
+/// Simulates `studies` with each number of participants. A study's outcome does not depend on other studies.
 StudyOutcomes simulate_studies(const PowerRequest& request, StudyRange studies);
 StudyOutcomes simulate_cell(const PowerRequest& request, const PowerCell& cell);
 
@@ -47,7 +45,7 @@ StudyOutcomes simulate_cell(const PowerRequest& request, const PowerCell& cell);
 Json power_json(const PowerRequest& request, const StudyOutcomes& outcomes);
 
 /// Simulates the cell and writes its file atomically. Does nothing if the file already holds this cell.
-/// base::Error if the file exists with another content.
+/// base::Error if the file has another content; an empty file is replaced.
 void run_cell(const PowerRequest& request, const PowerCell& cell, const std::filesystem::path& file);
 
 /// Collects the outcomes of all cells from their files, in any order. A cell that occurs twice counts once.

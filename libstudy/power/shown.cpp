@@ -17,8 +17,8 @@ int index_or_add(std::vector<std::string>& list, const std::string& item) {
   return static_cast<int>(list.size()) - 1;
 }
 
-/// Sets the periods of one participant's trials. A period is a run of trials of one block, and a block is the
-/// trials of one scene at one n_*.
+/// Sets the periods of one participant's trials. Trials with the same scene and n_* form a block, and a
+/// period is a run of successive trials of one block.
 void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
   std::vector<int> blocks;
   for (const auto& trial : trials) {
@@ -47,8 +47,8 @@ std::vector<ShownTrial> planned_trials(const Protocol& protocol, std::uint64_t s
   const ShownFactors factors(protocol.design);
   std::vector<ShownTrial> out;
   for (int participant = 0; participant < n; ++participant) {
-    // A session takes the least used slot, so participants take slots 0, 1, ... in turn and then slot 0
-    // again.
+    // A new session gets a slot with the fewest participants, so the slots are 0, 1, ... in turn, then again
+    // from 0.
     const auto plan = make_plan(protocol, "P" + std::to_string(participant + 1), seed, participant % slots);
     const auto before = out.size();
     for (const auto& trial : plan.trials) {

@@ -18,10 +18,12 @@ struct ShownFactors {
     int scene = 0, n_star = 0, method = 0;
   };
   std::vector<std::string> scenes, n_stars;
-  std::vector<std::string> methods;            ///< treatment_name(): method, and its level of effects
-  std::vector<Place> cells;                    ///< scene, n_* and method of each of Design::cells
-  std::vector<std::string> effects;            ///< levels of the factor; empty if effects are not a factor
-  std::vector<stats::FactorPlace> treatments;  ///< indices of effects (level) and method (rest) of `methods`
+  std::vector<std::string> methods;  ///< treatment_name(), such as "Ours" or "Ours, foam"
+  std::vector<Place> cells;          ///< scene, n_* and method of each of Design::cells
+  std::vector<std::string> effects;  ///< levels of the factor; empty if effects are not a factor
+  /// For each of `methods`: `level` is its index in `effects`, `rest` the number of its method without the
+  /// level of effects. Empty if effects are not a factor.
+  std::vector<stats::FactorPlace> treatments;
 };
 
 struct ShownTrial {
@@ -29,7 +31,7 @@ struct ShownTrial {
   int first = 0;        ///< cell of the only or first stimulus
   int second = -1;      ///< cell of the second interval, or -1
   int position = 0;
-  int period = 0;  ///< see stats::MethodScore::period
+  int period = 0;  ///< run of successive trials with one scene and one n_*, from 0; stats::periods_of()
 };
 
 /// Trials of the blocks of kind stimulus for n participants. Participants take the slots of the order

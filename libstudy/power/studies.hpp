@@ -12,8 +12,8 @@
 
 namespace study {
 
-/// Consecutive studies, from number `first` on. A study's number alone fixes its random numbers, in any
-/// process.
+/// Consecutive studies, from number `first` on. The request and a study's number determine the study's random
+/// numbers.
 struct StudyRange {
   int first = 0, count = 0;
 };

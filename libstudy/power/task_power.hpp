@@ -62,9 +62,9 @@ struct WorldPower {
 };
 
 /// Task 1 or 2: simulates `studies` with each number of participants. The result does not depend on the
-/// number of threads. A study with 10 participants consists of the first 10 participants of the same study
-/// with 20, which makes curves over n smooth. All worlds use the same random numbers, which makes differences
-/// between worlds precise.
+/// number of threads. A study with 10 participants has the first 10 participants of the study with 20 that
+/// has the same number, which makes curves over n smooth. All worlds use the same random numbers, which makes
+/// differences between worlds precise.
 TaskCounts count_task_studies(const PowerRequest& request, StudyRange studies);
 
 /// Summarises the counts over all studies of the request.

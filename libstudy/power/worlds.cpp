@@ -25,7 +25,7 @@ int rank_of(const std::string& method) {
 }
 
 using stats::HypothesisKind;
-using Qualities = std::array<double, 5>;  // quality of each method in methods_by_rank
+using Qualities = std::array<double, 5>;  // one value for each method, in the order of methods_by_rank
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
 

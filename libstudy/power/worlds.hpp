@@ -23,8 +23,9 @@ struct World {
 };
 
 /// The worlds named in PowerRequest::worlds, for Task 1 or 2. base::Error if world "effect" is requested
-/// without an effect, if world "paper" is requested for an n_* that the paper lacks, if the world cannot be
-/// simulated for levels of effects, or if the protocol varies effects without level none.
+/// without an effect, if world "paper" is requested for an n_* that the paper lacks, if world "margin" does
+/// not fit the plan's hypotheses, if the world cannot be simulated for levels of effects, or if the protocol
+/// varies effects without level none.
 std::vector<World> make_worlds(const PowerRequest& request, const ShownFactors& factors);
 
 }  // namespace study

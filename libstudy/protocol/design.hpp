@@ -82,8 +82,8 @@ enum class Assignment {
 };
 
 /// Cells are grouped by (scene, n_star), in format 3 by the levels of the between-subject factors, with
-/// equally many in each group. A participant sees `groups` groups, one after another. In each group the
-/// participant sees all cells, or all pairs of pairs_of_group().
+/// equally many cells in each group. A participant sees `groups` groups, one after another. In each group the
+/// participant sees all cells, or all pairs of pairs_of_group(); with a procedure, the trials of its tracks.
 struct Design {
   std::vector<Cell> cells;            ///< by group, in file order; trials name cells by their index
   std::vector<DesignFactor> factors;  ///< of format 3, in file order; empty in format 2
@@ -91,8 +91,7 @@ struct Design {
   /// True: the water of every cell is painted by its temperature. Every cell then needs the effect heat.
   bool paint_temperature = false;
   TimingSource timing = TimingSource::Settings;
-  bool pairs =
-      false;  ///< true: each trial shows two cells; without `standard` all unordered pairs of a group
+  bool pairs = false;  ///< true: each trial shows two cells of a group; see pairs_of_group()
   /// The standard of two-interval trials of format 3, with which every other cell of its group is paired;
   /// `pairs` is then true. By factor: index of the standard's level; 0 for a between-subject factor, which is
   /// ignored.
@@ -100,7 +99,8 @@ struct Design {
   /// Adaptive trials of format 3; none: every cell, or pair, is shown `repetitions` times.
   std::optional<Procedure> procedure;
   int repetitions = 1;  ///< trials of each cell, or pair, in a session; more than 1 only in format 3
-  int groups = 1;  ///< groups per participant: with different scenes, and different n_star as far as possible
+  /// Groups per participant, with different scenes, and different n_star as far as possible; 1 in format 3.
+  int groups = 1;
   TrialOrder order = TrialOrder::Shuffle;
   /// Factors for TrialOrder::Constrained: "method", "effects", "mean_fps" or "sd_fps"; in format 3 their
   /// names.
@@ -119,7 +119,7 @@ int trials_of_group(const Design& design);
 /// every other cell with the standard.
 std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group);
 
-/// True if the cell has the standard's level of every within-subject factor; the design has a standard.
+/// True if the cell has the standard's level of every within-subject factor. Requires Design::standard.
 bool is_standard(const Design& design, const Cell& cell);
 
 /// The level of a factor of format 3 as text, such as "h50".

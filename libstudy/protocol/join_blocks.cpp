@@ -60,7 +60,7 @@ struct Asked {
   const Question* question;
 };
 
-/// Questions by id; questions of ssq and fms blocks are taken from the first block of their kind.
+/// Questions by id. Several blocks may have the questions of ssq or fms; the map has those of the first.
 std::map<std::string, Asked> questions_by_id(const std::vector<Block>& blocks) {
   std::map<std::string, Asked> out;
   for (const Block& block : blocks) {

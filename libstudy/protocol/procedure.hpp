@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// In the file: "staircase", "quest_plus", "ptpe".
+/// The rule that chooses the stimulus of the next trial.
 enum class ProcedureKind {
   Staircase,  ///< transformed or weighted up-down rule (Levitt 1971, Kaernbach 1991)
   QuestPlus,  ///< QUEST+ (Watson 2017)
@@ -32,8 +32,8 @@ struct Procedure {
   std::string axis;               ///< key of the levels' timing, such as "hitch_ms"; empty for Ptpe
   std::vector<double> deviation;  ///< Ptpe: standard deviation of the frame rate of each level
   int trials = 40;                ///< number of trials of each track
-  /// The score that counts as a positive answer; none for pairs. In pairs, the choice of the comparison
-  /// counts as positive if `comparison` is true, and the choice of the standard if it is false.
+  /// The score that counts as a positive answer; none for pairs and for Ptpe. In pairs, the choice of the
+  /// comparison counts as positive if `comparison` is true, and the choice of the standard if it is false.
   std::optional<int> positive;
   bool comparison = true;
 
@@ -46,8 +46,8 @@ struct Procedure {
   /// QuestPlus, Ptpe: a level is chosen at most this often in a track.
   int most_of_one = 1000;
   /// QuestPlus, Ptpe: number of trials at the start of a track whose level the answers do not choose.
-  /// QuestPlus spreads them evenly over the levels. Ptpe gives them the standard deviations between the
-  /// smallest and the largest. These trials allow checks of the model.
+  /// QuestPlus spreads these trials evenly over the levels. Ptpe uses the standard deviations between the
+  /// smallest and the largest in turn. These trials allow checks of the model.
   int fixed = 0;
 };
 
@@ -56,7 +56,7 @@ const std::vector<std::string>& axis_keys();
 /// The number of a profile under one of these keys; none: profiles of its kind lack the key.
 std::optional<double> axis_value(const TimingProfile& profile, const std::string& key);
 
-/// "staircase", "quest_plus", "ptpe".
+/// The word for `kind` in protocol files: "staircase", "quest_plus" or "ptpe".
 const char* procedure_word(ProcedureKind kind);
 
 }  // namespace study

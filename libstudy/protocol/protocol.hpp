@@ -109,7 +109,7 @@ struct Block {
 struct Protocol {
   static constexpr int newest_format = 3;
 
-  int format = 2;  ///< 2, or 3: factors, timing profiles
+  int format = 2;  ///< 2, or 3, which adds factors and timing profiles
   std::string name;
   std::string version;
   std::string language;
@@ -127,8 +127,8 @@ struct Protocol {
   /// True: the texts instruct participants to look at the middle of the picture, so the gaze point is known
   /// before the session.
   bool fixation = false;
-  /// True: the study needs tracked gaze; the console and the notes of a power calculation say so. Reports
-  /// label hypotheses with `needs_gaze` not testable without tracked gaze, whatever the value.
+  /// True: the study needs tracked gaze; the console and the notes of a power calculation say so. The value
+  /// has no effect on reports: they mark the hypotheses with MethodClaim::needs_gaze.
   bool needs_gaze = false;
   /// True: the camera uses the visual angle of the picture instead of each scene's angle.
   bool true_angle = false;
@@ -147,13 +147,15 @@ struct Protocol {
 /// Every question of the protocol with the index of its block, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
-/// How strictly to read a protocol. Stored accepts protocols of earlier program versions, with any question
-/// id, any form of gaze_question and sharing_question, and in format 2 any method name and n_*.
+/// How strictly to read a protocol. Protocols of earlier program versions may fail the newest checks, so
+/// Stored skips these: misspelt ids of known questions, the form of gaze_question and sharing_question, and
+/// in format 2 method names and n_*.
 enum class ProtocolUse { New, Stored };
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range
 /// or two keys that contradict each other. `name` names the file in messages.
 Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use = ProtocolUse::New);
+/// As parse_protocol(); base::Error also for a file that cannot be read or is larger than 1 MiB.
 Protocol read_protocol(const std::filesystem::path& path);
 /// Sets the duration of every stimulus, 0.1 to 3600 s; changes the hash and marks the data as test. Equal
 /// texts and seconds give equal hashes.

@@ -38,8 +38,8 @@ struct Question {
   std::optional<std::pair<int, int>> accept;
   std::optional<int> stop_at;  ///< this score or more offers a rest, then ends the session (Fms)
   std::optional<int> expect;   ///< the answer of an attentive person (Catch)
-  std::optional<double>
-      level;             ///< Scale, Vas: score at which a pilot's curve is fitted; none: the scale's midpoint
+  /// Scale, Vas: score at which a pilot's curve is fitted; none: the scale's midpoint.
+  std::optional<double> level;
   double timeout_s = 5;  ///< Reaction: time until the page closes by itself, s
 
   bool operator==(const Question&) const = default;
@@ -80,8 +80,8 @@ std::vector<int> scores_of(const Question& question);
 /// True if the score is a possible answer.
 bool can_be_given(const Question& question, int score);
 
-/// The key that chooses a score of a YesNo: the first letter of its words, a to z. Empty for another letter,
-/// for words that begin alike, and for other kinds.
+/// The key that chooses a score of a YesNo: the first letter of its words in lower case, a to z. Empty for
+/// another letter, if the words of both scores begin with the same letter, and for other kinds.
 std::string letter_of(const Question& question, int score);
 
 /// Score of a scale at which a pilot's curve is fitted: Question::level, else the scale's midpoint.

@@ -131,7 +131,7 @@ std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
 
 // Largest number of sequences of groups; the assignment lists all of them.
 constexpr double most_sequences = 50000;
-constexpr double most_places = 1e7;
+constexpr double most_places = 1e7;  // largest number of slots; see check_places()
 
 TimingSource read_timing_source(const base::TomlTable& table) {
   const std::string word = table.choice("timing", {"settings", "native", "equal", "table2"});
@@ -154,8 +154,8 @@ std::size_t distinct_levels(const Design& design, Level level) {
   return levels.size();
 }
 
-/// Upper bound on the number of sequences of groups: counts all sequences with different scenes, also those
-/// that spread n_* unevenly.
+/// Upper bound on the number of sequences of groups. In format 2 it counts all sequences with different
+/// scenes, also those that spread n_* unevenly. In format 3 a sequence is one group.
 double sequences_at_most(const Design& design) {
   if (!design.factors.empty()) return static_cast<double>(cell_groups(design).size());
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
@@ -166,7 +166,8 @@ double sequences_at_most(const Design& design) {
   return out;
 }
 
-/// Checks the number of groups: a participant never sees a scene twice.
+/// Checks that there are enough scenes, because the groups of a participant have different scenes. Limits the
+/// number of sequences of groups.
 void check_groups(const base::TomlTable& table, const Design& design) {
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
   if (static_cast<std::size_t>(design.groups) > scenes) {
@@ -212,7 +213,6 @@ void check_places(const base::TomlTable& table, const Design& design) {
   }
 }
 
-/// The level of a factor as text.
 std::string level_of(const Design& design, const Cell& cell, const std::string& factor) {
   for (std::size_t i = 0; i < design.factors.size(); ++i)
     if (design.factors[i].name == factor) return level_name(design, cell, i);
@@ -304,7 +304,8 @@ bool same_group(const Design& design, const Cell& a, const Cell& b) {
   return true;
 }
 
-/// Number of tracks of an adaptive procedure in one group: combinations of the other factors' levels.
+/// Number of tracks of an adaptive procedure in one group: combinations of the levels of all factors but the
+/// procedure's, without the standard.
 int track_count(const Design& design, const std::vector<int>& group) {
   std::set<std::vector<int>> tracks;
   for (const int index : group) {

@@ -99,7 +99,7 @@ std::vector<ReadFactor> read_factors(const base::TomlTable& root) {
     root.fail("factor", "appears " + std::to_string(tables.size()) + " times",
               "write 1 to " + std::to_string(most_factors) + " tables [[factor]]");
   std::vector<ReadFactor> out;
-  std::map<std::string, std::string> setter;  // by key: factor that sets it
+  std::map<std::string, std::string> setter;  // from a key to the factor that sets it
   std::set<std::string> names;
   for (const base::TomlTable& table : tables) {
     out.push_back(read_factor(table));
@@ -118,7 +118,7 @@ std::vector<ReadFactor> read_factors(const base::TomlTable& root) {
   return out;
 }
 
-/// All combinations of levels; the last factor runs fastest.
+/// All combinations of levels; successive combinations differ in the level of the last factor first.
 std::vector<std::vector<int>> crossed(const base::TomlTable& root, const std::vector<ReadFactor>& factors) {
   std::vector<std::vector<int>> out{{}};
   for (const ReadFactor& factor : factors) {
@@ -173,8 +173,8 @@ std::vector<std::vector<int>> listed(const base::TomlTable& root, const std::vec
   return out;
 }
 
-/// Sorts the combinations so that those of one between-subject group are neighbours. Otherwise keeps the
-/// order of the file.
+/// Sorts the combinations so that those of one between-subject group are neighbours. Within a group their
+/// order does not change.
 void sort_by_group(std::vector<std::vector<int>>& combinations, const std::vector<ReadFactor>& factors) {
   std::stable_sort(combinations.begin(), combinations.end(), [&](const auto& a, const auto& b) {
     for (std::size_t f = 0; f < factors.size(); ++f)

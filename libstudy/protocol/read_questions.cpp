@@ -69,7 +69,7 @@ void read_reaction(const base::TomlTable& table, Question& question) {
   question.timeout_s = table.number_or("timeout_s", question.timeout_s, {0.1, 60});
   question.scale_min = 0;
   question.scale_max = 1;
-  question.anchors = {{0, "too late"}, {1, "pressed"}};  // not shown: for exports
+  question.anchors = {{0, "too late"}, {1, "pressed"}};  // for exports; participants do not see these words
   if (question.personal)
     table.fail("personal", "= true keeps no response time", "remove it, or use another kind");
 }

@@ -35,7 +35,8 @@ Design read_design(const base::TomlTable& table);
 /// is [procedure] or null.
 Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table,
                           const base::TomlTable* procedure);
-/// Reads order, never_adjacent and assignment into `out`, which must already have its cells.
+/// Reads order, never_adjacent and assignment into `out`, which must already have its cells, pairs, groups
+/// and repetitions.
 void read_assignment(const base::TomlTable& design, Design& out);
 /// The effects of each level, from [[design.effect_set]]. `no_table` is called with the index of a level that
 /// has no table and needs one; it must throw.
