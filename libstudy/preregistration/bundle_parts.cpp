@@ -43,7 +43,6 @@ std::string curves_text(const Protocol& protocol, const stats::AnalysisPlan& pla
   return out;
 }
 
-/// True if the protocol has a block of this kind.
 bool has_block(const Protocol& protocol, BlockKind kind) {
   return std::any_of(protocol.blocks.begin(), protocol.blocks.end(),
                      [&](const Block& block) { return block.kind == kind; });
@@ -59,7 +58,7 @@ int widest_scale(const Protocol& protocol) {
   return out;
 }
 
-/// Keys of the plan that have no effect in any of the protocols -> the reason.
+/// For each key of the plan that has no effect in any of the protocols, the reason.
 std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& protocols,
                                               const stats::AnalysisPlan& plan) {
   const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
@@ -92,9 +91,9 @@ struct ByOrder {
   std::string text;
 };
 
-/// If the answer's time is impossible, the session's clock was wrong, and the times of the rows before the
-/// answer decide. Otherwise it is unknown if the answer's time or the time of the rows is wrong, and the
-/// bundle counts as older only if it is older than the answer's time.
+/// The bundle counts as older if it is older than the answer's time. If the answer's time is impossible, the
+/// session's clock was wrong, and a bundle older than the rows before the answer counts as older too. If the
+/// time is possible, either this time or that of the rows is wrong, so the rows do not count.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

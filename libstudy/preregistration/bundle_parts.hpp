@@ -15,12 +15,12 @@ namespace study::report {
 inline constexpr std::size_t largest_bundle_file = 1 << 24;
 
 /// The fields of a hypothesis that preregistration fixes, thus without estimates and p values. `hypothesis`:
-/// output of hypothesis_json() when a bundle is written, an entry of "hypotheses" of the results when it is
-/// compared.
+/// output of hypothesis_json() when a bundle is written, an entry of "hypotheses" of the results when a study
+/// is compared with a bundle.
 base::Json fixed_part(const base::Json& hypothesis);
 
-/// Text of a bundle's plan.toml. A key that has no effect in any of the protocols is written as a TOML
-/// comment with the reason.
+/// Text of a bundle's plan.toml, with the hypotheses in force if one of the protocols tests any. A key that
+/// has no effect in any of the protocols is written as a TOML comment with the reason.
 std::string frozen_plan(const std::vector<Protocol>& protocols, stats::AnalysisPlan plan);
 
 /// Text of a bundle's PREREGISTRATION.txt. `untested`: as returned by untested_claims(). `with_power`: true
@@ -30,8 +30,8 @@ std::string bundle_text(const std::vector<Protocol>& protocols, const stats::Ana
                         bool with_power, const std::string& frozen_utc);
 
 /// An entry of "times": "frozen_before" is true if the bundle is older than the first answer to a protocol,
-/// and null if this is unknown. Times of answers decide, and for doubtful times the order of the database's
-/// rows. `used`: the protocol's entry in study.protocols of the results.
+/// false if it is not, and null if this is unknown. Times of answers decide, and for doubtful times the order
+/// of the database's rows. `used`: the protocol's entry in study.protocols of the results.
 base::Json time_json(const std::string& frozen_utc, const base::Json& used);
 
 }  // namespace study::report

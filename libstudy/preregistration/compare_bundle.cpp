@@ -128,8 +128,8 @@ bool same_part(const std::string& name, const Json& planned, const Json& tested,
   return same;
 }
 
-/// Compares two fixed_part()s of one hypothesis, test by test. Adds each difference to `differences`. Returns
-/// false if there is a difference.
+/// Compares two results of fixed_part() for one hypothesis, test by test. Adds each difference to
+/// `differences`. Returns false if there is a difference.
 bool same_hypothesis(Json planned, Json tested, Json& differences) {
   const std::string id = tested.at("id");
   std::map<std::string, Json> before;

@@ -24,13 +24,15 @@ struct BundleRequest {
 /// Writes the folder `out` with these files: a copy of each protocol; hypotheses.json (the hypotheses about
 /// methods that the protocols test, each with its margin); plan.toml (margins, levels, exclusion rules,
 /// seed); power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum
-/// -c`. Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is
-/// left, if `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same name
-/// or different levels for one question, if `power` is no JSON, or if the folder cannot be written.
+/// -c`. Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and nothing is
+/// written, if `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same
+/// name or different levels for one question, if `power` cannot be read or is no JSON, or if the folder
+/// cannot be written.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
 /// The hypotheses about methods that the requested protocols do not test, each with the reason: "ID of task1:
-/// the protocol does not show FovFluid".
+/// the protocol does not show FovFluid". A hypothesis that one protocol
+/// tests is listed for another one only if that one tests none.
 std::vector<std::string> untested_claims(const BundleRequest& request);
 
 /// A bundle as read from disk.
@@ -46,9 +48,9 @@ struct Bundle {
 Bundle read_bundle(const std::filesystem::path& folder);
 
 /// The entry "preregistration" of the results (docs/report.md): for each task, true if its protocol and
-/// hypotheses are those of the bundle, the bundle is older than the answers and no file of the bundle was
-/// altered; and all differences. `protocols`: the database's protocols. `results`: from study_results() with
-/// the bundle's plan.
+/// hypotheses are those of the bundle, the bundle is older than the first answer or no answer has a time, and
+/// no file of the bundle was altered; and all differences. `protocols`: the database's protocols. `results`:
+/// from study_results() with the bundle's plan.
 base::Json compare_with_bundle(const Bundle& bundle, const std::vector<ProtocolRow>& protocols,
                                const base::Json& results);
 

@@ -49,7 +49,7 @@ std::pair<double, double> middle_of(const MeasuredPicture& picture) {
   return {x_sum / std::max(count, 1.0), y_sum / std::max(count, 1.0)};
 }
 
-/// Runs a cell and averages its measured features.
+/// Runs a cell and averages its measured features. base::Error if it shows no fluid at any measured step.
 PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
   const sim::Offscreen target(width_px, height_px);
   PictureFeatures sum;

@@ -11,19 +11,20 @@
 
 namespace study {
 
-/// Runs each cell live for 240 content steps from start_frame and draws it at 640 x 360 px. At every 30th
-/// step it measures three successive pictures; the features are the means. The gaze is at the mean position
-/// of the visible fluid. Results are cached in `folder`, one file per stimulus, start_frame, content step,
-/// tau and program version. Needs a GL context if a cell is not cached.
+/// Runs each stimulus live for 240 content steps from start_frame and draws it at 640 x 360 px. Around every
+/// 30th step it measures three successive pictures; the features are the means. The gaze is at the mean
+/// position of the visible fluid. Results are cached in `folder`, one file per stimulus, start_frame, content
+/// step, tau and program version. Needs a GL context if a stimulus is not cached.
 class CellFeatures final : public FeatureSource {
  public:
   /// choice_of: returns the live stimulus of a cell.
   CellFeatures(std::filesystem::path folder, std::function<StimulusChoice(const Cell&)> choice_of)
       : folder_(std::move(folder)), choice_of_(std::move(choice_of)) {}
 
-  /// Measures all cells of a protocol before the session, with a progress bar.
+  /// Measures each stimulus of a protocol, in the first cell that shows it; shows a progress bar. Call it
+  /// before the session.
   void measure(const Protocol& protocol);
-  /// base::Error for a cell that measure() did not measure.
+  /// base::Error for a stimulus that measure() did not measure.
   PictureFeatures of(const StimulusSpec& stimulus) override;
 
  private:

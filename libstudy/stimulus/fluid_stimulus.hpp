@@ -49,7 +49,8 @@ class BakedPictures final : public Stimulus {
 };
 
 /// Renders the particle frames of a bake with their foam. With paint_temperature, paints temperatures over
-/// the water if the bake stores temperatures.
+/// the water if the bake stores temperatures. base::Error for a scene with free obstacles, which a bake of
+/// particles does not store.
 class BakedParticles final : public Stimulus {
  public:
   explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
@@ -72,8 +73,8 @@ class BakedParticles final : public Stimulus {
   sim::ParticleBuffer particles_, foam_;
 };
 
-/// A running simulation. It advances one frame per content step, and its method gets the picture that the
-/// viewer saw last.
+/// A running simulation. It advances one frame per content step, and its method gets the picture that was
+/// drawn last.
 class LiveFluid final : public Stimulus {
  public:
   /// Makes the simulation at frame 0; called again for each rewind.
@@ -137,7 +138,7 @@ struct StimulusChoice {
   std::string method = "HiRes";
   std::string n_star = "32k";
   std::string backend = "auto";
-  double content_step_s = 0;  ///< fluid time per content step; 0 = that of the scene or the bake
+  double content_step_s = 0;  ///< fluid time per content step; 0 = that of the setting, scene or bake
   /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured frame
   /// rate.
   std::optional<sim::FrameRate> fixed_rate;

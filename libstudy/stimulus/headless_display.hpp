@@ -22,7 +22,8 @@ class HeadlessDisplay final : public Display {
   double refresh_hz() const override { return 0; }
   /// Draws into the back buffer and waits until the GPU has finished.
   void render(Stimulus& stimulus) override;
-  /// Swaps the buffers. No drawing is pending, so the times gpu_done and submitted are almost equal.
+  /// Waits until scheduled_ns and swaps the buffers. No drawing is pending, so the times gpu_done and
+  /// submitted are almost equal.
   PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
 
   /// The picture in the front buffer.

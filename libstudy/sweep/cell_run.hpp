@@ -26,7 +26,7 @@ std::vector<std::uint8_t> from_bits(const std::string& bits, std::size_t pixels)
 /// The water at one instant. Energies are per kilogram, J/kg.
 struct WaterSample {
   double time_s = 0;     ///< time since the gate opened
-  double front_m = 0;    ///< position of the water's front: 99 % of the mass has a smaller x
+  double front_m = 0;    ///< position of the water's front: the smallest x up to which 99 % of the mass lies
   double centre_m[3]{};  ///< centre of mass: x, y, z
   double kinetic_j_kg = 0;
   double density_error = 0;  ///< mean over the particles of max(rho / rho_0 - 1, 0)
@@ -46,7 +46,7 @@ struct CellRun {
   /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if SweepCell::kept
   /// is empty.
   std::vector<KeptPicture> pictures = {};
-  double pixels_per_degree = 0;  ///< resolution of the pictures at their centre
+  double pixels_per_degree = 0;  ///< resolution of the pictures at their centre; 0 without pictures
   double particles_mean = 0, substeps_mean = 0;
   std::int64_t braked = 0;  ///< number of times that the speed limit slowed a particle in a substep
 };

@@ -17,7 +17,8 @@ sim::SolverSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
   return out;
 }
 
-/// Converts one of SolverKnobTraits::others to the knob's value: for Size it is a multiple of n_*.
+/// Converts an entry of SolverKnobTraits::others to the knob's value: for Size the entry is a multiple of
+/// n_*.
 double value_of(const sim::SolverKnobTraits& traits, double value, const SweepPlan& plan) {
   return traits.knob == sim::SolverKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
 }

@@ -32,10 +32,12 @@ struct SweepPlan {
   std::string scene = "SingleDam";
   std::int64_t n_star = 4096;
   double seconds = 2;
-  int seeds = 2;
+  int seeds = 2;          ///< starts of each setting except the references; see SweepCell::seed
   std::string size = {};  ///< SweepCell::size of all cells
   std::string kept = {};  ///< SweepCell::kept of all cells
-  bool quick = false;     ///< true: only a few cells
+  /// True: only the size n_star and, of the knobs, only the number of projections; no finer references, no
+  /// factorial.
+  bool quick = false;
 };
 
 /// The setting with which all others are compared: HiRes with 32 projections and four substeps.

@@ -10,9 +10,10 @@
 namespace study {
 
 /// Errors of pictures in per cent; smaller is better. NaN without pictures. E5 uses the pictures before
-/// PictureScores::parting_s and is NaN if there are none.
+/// PictureScores::parting_s and is NaN if there are none. Fovea and Salient skip pictures whose mask has
+/// fewer than 100 pixels.
 enum class PictureError {
-  Picture,  ///< E5: root mean square difference over 255; PSNR in dB is -20 log10 of it
+  Picture,  ///< E5: root mean square difference over 255; PSNR in dB is -20 log10 of this ratio
   Fovea,    ///< E5: root mean square difference over 255 within the fovea
   Salient,  ///< E5: root mean square difference over 255 in the reference's most salient part outside the
             ///< fovea

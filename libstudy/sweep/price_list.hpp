@@ -98,8 +98,9 @@ struct ObservedOrder {
 struct PriceList {
   SweepOrigin origin;
   std::string scene;
-  SweepErrors floor{};  ///< errors of the reference from a start perturbed by one unit in the last place (0
-                        ///< for Density): smaller errors are meaningless
+  /// Errors of the reference from a start perturbed by one unit in the last place (0 for Density). Smaller
+  /// errors are meaningless.
+  SweepErrors floor{};
   /// Results of those of finer_references() that were run.
   std::vector<SettingResult> finer = {};
   std::vector<SettingResult> settings = {};
@@ -112,8 +113,9 @@ struct PriceList {
   bool pictures() const { return !std::isnan(parting_s); }
 };
 
-/// Evaluates those of `cells` that were run by `plan` on the machine, program and scene file of `origin`.
-/// base::Error if the plan's reference is missing or has fewer than two seeds.
+/// Evaluates those of `cells` that have the scene, duration and picture sizes of `plan`, and `origin`.
+/// `cells` must have the order of SweepFile::cells(). base::Error if the plan's reference is missing or lacks
+/// seed 1 or a second seed.
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 

@@ -197,8 +197,8 @@ SweepFile::SweepFile(const std::filesystem::path& path, Open how) {
     refuse_damaged(path);
   }
   database_->execute("PRAGMA foreign_keys = ON");
-  // user_version is 0 if the program that created the file was killed in its first transaction. SQLite has
-  // rolled back that transaction when the file was opened.
+  // user_version is 0 in a new file, and in a file whose first transaction was cut off by a kill: SQLite
+  // rolls that transaction back before the first read.
   if (how == Open::Read && database_->integer("PRAGMA user_version") == 0) refuse(path);
   if (how == Open::Read) return;
   database_->execute("PRAGMA synchronous = FULL");

@@ -46,7 +46,8 @@ class SweepFile {
   /// All cells, ordered by origin, scene, setting, run length, picture sizes and seed. The order does not
   /// depend on when they were run.
   std::vector<StoredCell> cells();
-  /// Adds the cells of the sweep file `shard` that this file lacks, in one transaction. Returns their number.
+  /// Adds those cells of the sweep file `shard` whose key and machine this file lacks, in one transaction.
+  /// Returns their number.
   std::int64_t merge(const std::filesystem::path& shard);
 
  private:

@@ -32,7 +32,8 @@ sim::BakeHeader header_of(const BakeOrder& order);
 /// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,
 /// method, n_*, effects, content step and too few frames. Compares foam, tau and gaze only if the wanted bake
 /// uses them. Compares painted temperatures if `found` has pictures; otherwise `found` must store
-/// temperatures if `wanted` paints them. Empty: no differences.
+/// temperatures if `wanted` paints them. Compares effects, foam and temperatures only for the same scene, tau
+/// and gaze only for the same method. Empty: no differences.
 std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
 /// Differences between the views of two bakes (camera, picture size and angles). A bake has a view if it

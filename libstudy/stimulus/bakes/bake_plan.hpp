@@ -35,7 +35,7 @@ struct SessionLook {
   base::PictureSize size;  ///< size of the participant's picture
 };
 
-/// The order for a stimulus that can be baked, without pictures. base::Error: no such scene.
+/// The order for a stimulus that can be baked, without pictures. base::Error if its scene cannot be read.
 BakeOrder order_of(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look);
 
 }  // namespace study

@@ -13,8 +13,8 @@ namespace study {
 /// Effects of a cell that replace the effects of its scene file.
 struct CellEffects {
   std::optional<std::vector<sim::Effect>> water = {};  ///< none: the design does not vary effects
-  std::optional<std::vector<sim::PictureEffect>> picture =
-      {};  ///< none: the effects of the scene remain, as no level names an effect of the picture
+  /// None: the picture keeps the effects of the scene, because no level names an effect of the picture.
+  std::optional<std::vector<sim::PictureEffect>> picture = {};
 };
 
 /// Effects of a level in this scene; `water` is always set. base::Error at file:line:column of the protocol:
@@ -37,8 +37,8 @@ void check_cell_effects(const Protocol& protocol);
 /// the design does not vary effects.
 std::string levels_in_words(const Protocol& protocol, const sim::Scene& scene);
 
-/// The painted range of temperatures in this scene, such as "temperature 293.15 to 353.15 K". The range
-/// is the same at every level of effects.
+/// The painted range of temperatures in this scene at the first level of effects, such as "temperature 293.15
+/// to 353.15 K". check_cell_effects() requires the same range at every level.
 std::string temperatures_in_words(const Protocol& protocol, const sim::Scene& scene);
 
 }  // namespace study

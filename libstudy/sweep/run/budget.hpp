@@ -38,8 +38,9 @@ struct BudgetRequest {
 
 /// Chooses a setting within the budget. Runs each candidate of `cells` from two new starts and takes the
 /// first whose new frames keep the budget too. The error in the returned file is over all starts, its times
-/// are over the new starts only. Calls `said` with a text for each candidate that fails. base::Error if no
-/// setting keeps the budget; the error names the nearest setting and by how much it exceeds the budget.
+/// are over the new starts only. Calls `said` with a text for each candidate that fails. base::Error if the
+/// sweep has no setting as requested, or none with the requested error. base::Error also if no setting keeps
+/// the budget; this error names the nearest setting and by how much it exceeds the budget.
 sim::SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
                                 const BudgetRequest& request,
                                 const std::function<StoredCell(const SweepCell&)>& run,

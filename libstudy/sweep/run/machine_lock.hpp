@@ -5,10 +5,10 @@
 namespace study {
 
 /// Holds the machine's lock for timed runs of all users while the object exists. The lock is flock() on the
-/// file vip-bench.lock in the folder $VIP_LOCK_DIR. If this variable is not set, the folder is the first of
-/// /run/lock and /tmp that every user may write to. The constructor waits until the lock is free and prints a
-/// message once on stderr while it waits. The lock is also released if the program is killed. base::Error
-/// without such a folder, or if the file cannot be opened.
+/// file vip-bench.lock in the folder $VIP_LOCK_DIR. If this variable is unset or empty, the folder is the
+/// first of /run/lock and /tmp that every user may write to. The constructor waits until the lock is free.
+/// The first time that a process waits, it prints a message on stderr. The lock is also released if the
+/// program is killed. base::Error without such a folder, or if the file cannot be opened or locked.
 class MachineLock {
  public:
   MachineLock();

@@ -36,7 +36,6 @@ class PictureKeeper {
         context_(context_is_current ? std::nullopt : std::optional(sim::GlContext::make_headless())),
         eye_(scene, size) {}
 
-  /// Resolution at the middle of the picture.
   double pixels_per_degree() const { return std::numbers::pi / 180 / sim::pixel_rays(eye_.view()).scale_y; }
   /// Returns a picture of frame number `frame` of the run. With `masks`, adds the masks of the fovea around
   /// the gaze point (half angle of the preset Tuned) and of the most salient part outside it. Computing masks
