@@ -15,7 +15,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// Questions asked in the stimulus blocks; a question asked in several steps appears several times.
+/// Questions that the steps of the stimulus block ask, in the order of the steps.
 std::vector<Question> asked_questions(const Protocol& protocol) {
   std::vector<Question> out;
   for (const auto& block : protocol.blocks) {

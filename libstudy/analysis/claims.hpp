@@ -31,8 +31,8 @@ void leave_out(std::vector<stats::ShownClaims::LeftOut>& left_out, const stats::
                std::optional<int> task, const std::string& reason);
 
 /// True if participants rate several treatments (methods, or methods with levels of effects) one by one, for
-/// realism and for each of `items`. Only then does the analysis plan's margin for the mean of the items have
-/// an effect.
+/// realism and for each of `items`. If false, the analysis plan's margin for the mean of `items` (without
+/// items: for realism) has no effect.
 bool compares_scores(const Protocol& protocol, const std::vector<std::string>& items);
 
 /// A sentence that names the questions that hypotheses of Task 1 need but that are missing from `asked`;

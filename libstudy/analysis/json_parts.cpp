@@ -51,7 +51,6 @@ std::string with_names(const std::string& reason, const std::vector<std::string>
       return methods.at(static_cast<std::size_t>(std::stoi(found[1])) - first);
     });
   };
-  // In the reasons, methods are numbered from 0 and items from 1.
   return items.replaced(named(reason, column, 0),
                         [&](const base::Groups& found) { return named(found[1], item, 1); });
 }

@@ -275,8 +275,8 @@ std::vector<stats::DeclaredHypothesis> read_hypotheses(const std::vector<base::T
   std::vector<DeclaredHypothesis> out;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     if (tables[i].has("task")) continue;
-    // tables() is called only once for "compare": each call makes new tables, and a key that is not looked up
-    // in every one of them is reported as unknown.
+    // Each call of tables() makes new tables, and a key that is not looked up in every one of them is
+    // reported as unknown. So "compare" is read with a single call.
     const Tables compare = tables[i].tables("compare");
     DeclaredHypothesis one = read_hypothesis(tables[i], compare, confidence);
     for (const DeclaredHypothesis& other : out) {

@@ -84,8 +84,8 @@ std::vector<const TaskProtocol*> protocols_for(const TaskStudy& study, const Tas
   std::vector<const TaskProtocol*> out;
   for (const TaskProtocol& protocol : study.protocols)
     if (is_asked_for(protocol, selection)) out.push_back(&protocol);
-  // Protocols are sorted by their number of answered sessions, the largest first. A faulty version, used in
-  // few sessions, then comes after its corrected version.
+  // Protocols are sorted by their number of answered sessions, the largest first, so that a faulty version
+  // that was used in few sessions comes after its corrected version.
   std::stable_sort(out.begin(), out.end(), [](const TaskProtocol* a, const TaskProtocol* b) {
     return answered_sessions(*a) > answered_sessions(*b);
   });

@@ -29,14 +29,13 @@ TaskKind kind_of(const TaskProtocol& protocol);
 /// Name, version and first 12 digits of the SHA-256: "name 1.0 0123456789ab".
 std::string hashed_name(const TaskProtocol& protocol);
 /// True if `by` denotes the protocol: by the first digits of its SHA-256, by its name, by name and version,
-/// or by hashed_name(), which messages print.
+/// or by hashed_name(), which messages print. An empty `by` denotes every protocol.
 bool is_meant(const TaskProtocol& protocol, const std::string& by);
 
 /// The selection made by a command's options.
 struct TaskSelection {
   TaskKind task = TaskKind::Task1;
-  std::string protocol;  ///< the protocol's name, with or without version, or leading digits of its SHA-256;
-                         ///< empty: all protocols
+  std::string protocol;  ///< text for is_meant(); empty: all protocols
   stats::AnalysisPlan plan;
   std::string question = {};         ///< the question's id; empty: all main questions
   std::optional<double> level = {};  ///< pilot: score at which the curve is fitted; empty: see level_of()

@@ -104,8 +104,8 @@ struct TaskData {
   /// and 2 for any other.
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
-  /// The reason why hypotheses that need gaze cannot be tested: gaze was not
-  /// tracked in every session. Empty if gaze was tracked in every session.
+  /// The reason why hypotheses that need gaze cannot be tested: gaze was not tracked in every analysed
+  /// session. Empty if it was.
   std::string gaze_problem() const;
 };
 

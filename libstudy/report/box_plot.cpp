@@ -18,7 +18,7 @@ constexpr double left = 62, right_margin = 14, group_gap = 46, least_step = 74, 
 constexpr double plot_height = 270, bracket_step = 24, below = 78;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.4\" fill=\"none\"";
 
-/// A bracket with stars over the boxes of two methods whose scores differ.
+/// A bracket with stars over the boxes of two methods whose scores differ significantly without correction.
 struct Bracket {
   std::size_t first = 0, last = 0;  ///< indices of the boxes within the group
   Field stars;

@@ -1,7 +1,6 @@
 #pragma once
-/// Values of the results' JSON with their JSON pointers, and functions that print them as HTML. All numbers
-/// of the page are printed by these functions. They add the JSON pointer as attribute data-field, so that
-/// page and JSON can be compared.
+/// Values of the results' JSON with their JSON pointers, and functions that print the values as HTML. The
+/// functions add the JSON pointer as attribute data-field, so that page and JSON can be compared.
 
 #include <string>
 #include <vector>

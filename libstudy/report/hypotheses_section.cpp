@@ -130,7 +130,6 @@ std::string one(const Field& hypothesis, bool registered) {
   return subsection(words(hypothesis["id"]) + ", " + words(hypothesis["kind"]), body);
 }
 
-/// The plan's decision rule in words.
 std::string decision_words(const Field& plan) {
   if (plan["decision"].words() == "holm")
     return "Each hypothesis is a family of its own; Holm's step-down correction holds the family's error "

@@ -147,7 +147,6 @@ std::string tests_of_task1(const Field& root) {
              : "Hypotheses of Task 1 were tested by paired <i>t</i> tests. ";
 }
 
-/// A sentence on the tests of Task 2's pairs.
 std::string tests_of_task2(const Field& pairs) {
   bool binomial = false, shares = false;
   for (const Field& pair : pairs.entries()) {

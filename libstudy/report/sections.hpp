@@ -21,7 +21,8 @@ inline constexpr std::array<Part, 4> all_parts{
 std::vector<Field> documents(const Field& root);
 
 /// True if a task ("task1", "task2", "pilot") was preregistered: a bundle was given, it is intact, it holds
-/// the study's protocol and the hypotheses as they were tested, and it is older than the first answer.
+/// the study's protocol and the hypotheses as they were tested, and it is older than the first answer or no
+/// answer has a time.
 bool preregistered(const Field& root, const std::string& task);
 
 std::string head_section(const Field& root);
@@ -43,9 +44,10 @@ std::string task2_section(const Field& root);
 /// Part of a task's section if effects are a factor: a note that each "method" is a method with a level of
 /// effects.
 std::string treatment_note(const Field& task);
-/// The label of the score to which an entry of task1 belongs. The functions below render parts of sections:
-/// counts of ratings, response times, reliability, differences between n_*, smallest detectable effects.
+/// The label of the score to which an entry of task1 belongs.
 std::string label_of(const Field& task1, const Field& entry);
+// Parts of sections: counts of ratings, response times, reliability, differences between n_*, smallest
+// detectable effects.
 std::string pilot_ratings(const Field& pilot);
 std::string score_ratings(const Field& task1, const Field& score);
 std::string response_times(const Field& root, const std::string& task);

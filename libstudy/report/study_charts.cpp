@@ -104,7 +104,7 @@ namespace {
 
 constexpr double row_height = 22;
 
-/// The name, cut to 44 bytes so that space is left for the points. The table below the figure has the whole
+/// The name, shortened to 44 bytes to make room for the points. The table below the figure has the whole
 /// name.
 std::string shortened(const std::string& name) {
   constexpr std::size_t most = 44;

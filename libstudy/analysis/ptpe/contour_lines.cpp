@@ -102,7 +102,7 @@ std::vector<Polyline> contour_polylines(const ScoreGrid& grid, double level) {
   std::vector<Side> ends, all;
   for (const auto& [side, others] : found.joined) (others.size() == 1 ? ends : all).push_back(side);
   std::vector<Polyline> lines;
-  // Open lines are followed first, from one of their ends. The segments then left are closed loops.
+  // Open lines are followed first, from one of their ends. The remaining segments form closed loops.
   ends.insert(ends.end(), all.begin(), all.end());
   for (const auto& side : ends) {
     if (!found.joined[side].empty()) lines.push_back(found.take(side));

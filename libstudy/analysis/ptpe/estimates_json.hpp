@@ -23,8 +23,9 @@ base::Json bands_json(const PilotFit& fit);
 /// The entry "form": the test that mu(delta) is an exponential, at the fit's level, and the curve fitted
 /// without this assumption, at each 1 frame/s of delta.
 base::Json form_json(const PilotFit& fit);
-/// The lack-of-fit test of the straight form (m = q = 0), with the a and b of this form. The straight form
-/// may be used if p >= 0.05.
+/// The lack-of-fit test of the straight form, with the a and b of this form. The model is E[score] = level +
+/// k u + m u delta + q u^2 with u = log mu - log a - b delta; its straight form has m = q = 0. The straight
+/// form may be used if p >= 0.05.
 base::Json lack_of_fit_json(const stats::DirectEstimate& estimate);
 
 }  // namespace study

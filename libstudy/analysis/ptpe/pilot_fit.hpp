@@ -26,13 +26,12 @@ struct FitFlag {
 };
 
 /// All estimates at one level of the scale. The predictor is either the harmonic or the arithmetic mean of
-/// the realised frame rate.
+/// the realised frame rate. `ordinal` and `band` are computed for the harmonic mean only.
 struct LevelFit {
   stats::DirectEstimate direct;  ///< the main estimate
   stats::PilotEstimate contour;  ///< the paper's estimate
   stats::OrdinalPilotEstimate ordinal;
-  /// Confidence bands of mu(delta) for the solver's file (scale_end_fit.hpp); computed for the harmonic mean
-  /// only.
+  /// Confidence bands of mu(delta) for the solver's file (scale_end_fit.hpp).
   stats::Result<stats::CurveSpread> band = stats::Refusal{"not computed"};
 };
 
@@ -40,9 +39,10 @@ struct MainFit {
   double a = 0, b = 0;
 };
 struct MainSpread {
-  std::array<double, 2> a_ci{}, b_ci{};  ///< intervals of a and b; if spans_contour, they cover the direct
-                                         ///< and the contour's interval (stats/ptpe/solver_interval.hpp)
-  double a_se = 0, b_se = 0;             ///< standard errors of the direct estimate
+  /// Intervals of a and b. If spans_contour is true, each covers the direct estimate's interval and the
+  /// contour estimate's (stats/ptpe/solver_interval.hpp).
+  std::array<double, 2> a_ci{}, b_ci{};
+  double a_se = 0, b_se = 0;  ///< standard errors of the direct estimate
   bool spans_contour = false;
 };
 /// The estimate that is written into the solver's file.

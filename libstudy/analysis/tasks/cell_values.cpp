@@ -81,7 +81,7 @@ std::vector<int> in_group(const std::vector<int>& cells, const std::vector<int>&
 double constant_of(const DeclaredHypothesis& hypothesis) { return hypothesis.against.value_or(0.5); }
 
 /// Adds indicator variables for the levels of factor f in `cells`, which holds the cell of each row. The
-/// reference is the lowest level that occurs; it has no indicator.
+/// level with the lowest index that occurs is the reference and has no indicator.
 void add_level_terms(std::vector<stats::Predictor>& terms, const Design& design, std::size_t f,
                      const std::vector<int>& cells) {
   std::vector<double> levels;

@@ -55,15 +55,15 @@ std::vector<CellAnswer> threshold_values(const TaskData& data, std::span<const P
 /// For each participant, the index in cell_groups() of the group whose cells the participant saw; -1: none.
 std::vector<int> groups_of_people(const TaskData& data);
 
-/// Values of the two conditions. If the factor varies within participants, `a` and `b` have one value for
-/// each participant whose cells include both conditions. If it varies between participants, `a` has one value
-/// for each participant whose cells include the first condition, and `b` for each whose cells include the
-/// second.
+/// Values of the two conditions. If the same participants see both conditions, `a` and `b` have one value for
+/// each participant whose cells include both. If different participants see them (compares_groups()), `a` has
+/// one value for each participant whose cells include the first condition, and `b` for each whose cells
+/// include the second.
 struct ConditionValues {
   std::vector<stats::ExactMean> a, b;  ///< NaN: an answer about one of the condition's cells is missing
 };
-/// Means over the cells of each condition of the participant's means in the cell. For a single condition,
-/// every value of `b` is the constant `against` (default 0.5).
+/// A value is the mean, over the condition's cells that the participant saw, of the participant's mean in the
+/// cell. For a single condition, every value of `b` is the constant `against` (default 0.5).
 ConditionValues condition_values(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
                                  std::span<const CellAnswer> answers);
 

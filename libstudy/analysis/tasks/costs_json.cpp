@@ -93,7 +93,7 @@ void add_answers(const TaskData& data, Stimuli& out) {
     if (answer != report.answers.end())
       out[{report.scene, report.n_star, report.method}].said.add(answer->second);
   }
-  // A choice does not record its pair's n_*. It can be assigned only if the study has one n_*.
+  // A choice does not record the n_* of its pair, so choices count only if the study has one n_*.
   if (data.protocol.n_stars.size() > 1) return;
   for (const auto& choice : data.choices) {
     out[{choice.scene, 0, choice.first}].said.add(choice.first_chosen ? 1 : 0);

@@ -15,11 +15,11 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
                 const stats::AnalysisPlan& plan);
 /// Names of the exclusion rules that data of this study can violate. A rule is missing if the data lack what
 /// it checks (timing verdicts, catch pages, repeated trials, enough trials), if it is for pairs and the study
-/// shows no pairs (or the reverse), or if its limit is not below the scale's range.
+/// shows no pairs (or the reverse), or if its limit on differences of ratings is not below the scale's range.
 Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules);
 Json flow_json(const TaskFlow& flow);
-/// The entry "roster": counts of all participants and sessions of the database, by protocol. `sections`:
-/// SHA-256 of a protocol -> section of the report that analyses the protocol.
+/// The entry "roster": counts of all participants and sessions of the database, by protocol. `sections`: for
+/// the SHA-256 of a protocol, the sections of the report that analyse the protocol.
 Json roster_json(const TaskStudy& study, const std::multimap<std::string, std::string>& sections);
 /// A list with one entry for each exclusion.
 Json exclusions_json(const TaskData& data);

@@ -12,7 +12,7 @@ namespace study {
 
 namespace {
 
-/// A scale with at most so many scores is listed in full, including scores that were never given.
+/// A scale with at most this many scores is listed in full, including scores that were never given.
 constexpr int most_listed_scores = 21;
 
 /// One stimulus of a trial: its method (index in the protocol's list), and mean and SD of its nominal frame
@@ -36,7 +36,7 @@ struct CellScores {
 
 struct Given {
   std::vector<double> scores;
-  std::vector<bool> first_stands_first;  ///< pair: true if shown in the order of CellScores::shown
+  std::vector<bool> first_stands_first;  ///< for each score of a pair, true if shown[0] was shown first
   std::set<std::string> participants;
 };
 

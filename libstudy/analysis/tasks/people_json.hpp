@@ -21,10 +21,10 @@ inline constexpr int fewest_numbers = 5;
 /// The next smallest groups are pooled with them until pooled_people is at least smallest_group. So the count
 /// of a small group cannot be derived from the total.
 struct GroupCounts {
-  std::vector<std::pair<std::string, int>>
-      shown;  ///< answers with their counts, in the order given, without those of count 0
-  std::vector<std::string> pooled;
-  int pooled_people = 0;
+  /// Answers that are not pooled, with their counts, in the order given; without answers of count 0.
+  std::vector<std::pair<std::string, int>> shown;
+  std::vector<std::string> pooled;  ///< the pooled answers
+  int pooled_people = 0;            ///< number of people who gave one of the pooled answers
 };
 GroupCounts pool_small_groups(std::vector<std::pair<std::string, int>> counts);
 

@@ -95,7 +95,7 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
-  // Claims compare methods, so they are not tested if effects vary.
+  // The plan's hypotheses compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
     auto claims =
         stats::claims_about(stats::task2_hypotheses(claims_in_force(plan), analysis.pairs,
@@ -224,7 +224,7 @@ std::size_t simulated_people(const TaskStudy& study) {
   return people.size();
 }
 
-/// SHA-256 of each analysed protocol -> the section that analyses it: a task's name or apart_name().
+/// For the SHA-256 of each analysed protocol, the sections that analyse it: a task's name or apart_name().
 std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
                                                     const std::vector<TaskPart>& others) {
   std::multimap<std::string, std::string> out;

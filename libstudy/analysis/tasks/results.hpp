@@ -18,13 +18,12 @@ struct ResultsRequest {
   std::filesystem::path database;
   std::vector<TaskKind> tasks;  ///< kinds of analysis to make; a kind for which the database has no protocol
                                 ///< is listed in Results::missing
-  std::string protocol;  ///< the protocol's name, with or without version, or leading digits of its SHA-256;
-                         ///< empty: all protocols
+  std::string protocol;         ///< text for is_meant(); empty: all protocols
   PlanInForce plan;
   std::shared_ptr<const SweepTables> sweep = {};  ///< tables of an accuracy sweep; null: none
   std::string sweep_file = {};                    ///< the sweep file's name for display
-  bool incomplete = false;  ///< true: make the results although the journal of answers holds answers that the
-                            ///< database lacks
+  /// True: makes the results although the journal of answers has answers that the database lacks.
+  bool incomplete = false;
   std::string question = {};         ///< the question's id; empty: all main questions
   std::optional<double> level = {};  ///< score at which a pilot's curve is fitted; empty: see level_of()
 };

@@ -83,8 +83,8 @@ TaskData with_blocks_pooled(TaskData data) {
   return data;
 }
 
-/// True if a participant has several reports on one method at one n_*. The analysis averages these, so
-/// pooling blocks gives other results.
+/// True if a participant has several reports on one method at one n_*. The planned analysis averages these
+/// reports, so with_blocks_pooled() can lead to other results.
 bool averages_blocks(const TaskData& data) {
   std::map<std::tuple<int, int, int>, int> reports;
   return std::any_of(data.reports.begin(), data.reports.end(), [&](const Report& one) {

@@ -145,7 +145,8 @@ Json tested_json(const TestedHypothesis& one, double alpha, bool preregistered) 
   return json;
 }
 
-/// The hypotheses without any exclusion but those by the experimenter and by interruptions.
+/// The hypotheses, tested without the plan's rules of exclusion. Trials that the experimenter excluded and
+/// interrupted trials are still left out.
 Json without_exclusions(const TaskStudy& study, const ChosenTask& chosen, const stats::AnalysisPlan& plan,
                         const std::vector<TestedHypothesis>& planned) {
   Json list = Json::array();
@@ -199,8 +200,8 @@ Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
           {"problems", problems}};
 }
 
-/// Date and number of participants of the earlier document, and the number of participants without a session
-/// in it.
+/// Date and number of participants of the earlier document, and the number of present participants without a
+/// session in that document.
 Json since_json(const Json& participants, const Json& earlier, const std::string& file) {
   int fresh = 0;
   for (const Json& person : participants) fresh += person.at("new").get<bool>() ? 1 : 0;

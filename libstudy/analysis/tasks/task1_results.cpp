@@ -128,7 +128,7 @@ std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats:
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
-  // Claims compare methods, so they are not tested if effects vary.
+  // The plan's hypotheses compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
     auto hypotheses = shown_claims(out.tables, data, plan);
     out.hypotheses = std::move(hypotheses.claims);
