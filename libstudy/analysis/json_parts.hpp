@@ -32,7 +32,7 @@ Json json_refused(const std::string& reason);
 /// Replaces references to methods in a reason from stats by the methods' names: "method0" (counted from 0),
 /// and "item 1" or "items 1, 3" (counted from 1).
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods);
-/// Stars of significance for p: "***", "**", "*" or ""; "" if p is empty.
+/// Stars of significance: "***" for p below .001, "**" below .01, "*" below .05, else ""; "" if p is empty.
 std::string json_stars(const std::optional<double>& p);
 
 /// Index of `item` in `list`, from 0; the list's length if it is absent.

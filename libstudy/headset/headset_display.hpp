@@ -70,7 +70,8 @@ class HeadsetDisplay final : public Display {
   const HeadsetRules& rules() const { return rules_; }
   LoopFacts facts() const { return loop_.facts(); }
 
-  /// As in FrameLoop.
+  /// For an onlooker (a mirror) on another thread: an OpenGL context that shares the pictures, and the shown
+  /// picture and page, which stay unchanged until the next look() or look_away().
   sim::GlContext admit_onlooker() { return loop_.admit_onlooker(); }
   SeenNow look() { return loop_.look(); }
   void look_away() { loop_.look_away(); }

@@ -22,7 +22,8 @@ XrSystemId find_system(const XrConnection& xr) {
                       "connect the headset, switch it on, and try again");
   }
   if (result == XR_ERROR_FORM_FACTOR_UNSUPPORTED) {
-    throw base::Error("OpenXR", "the runtime knows no headsets", "use a runtime for head-mounted displays");
+    throw base::Error("OpenXR", "the runtime does not support headsets",
+                      "make a runtime for head-mounted displays the active one");
   }
   check_xr(result, "xrGetSystem");
   return system;

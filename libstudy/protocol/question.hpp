@@ -36,7 +36,7 @@ struct Question {
   /// Lowest and highest accepted score. Any other answer ends the session before the first stimulus, as
   /// refused consent or exclusion.
   std::optional<std::pair<int, int>> accept;
-  std::optional<int> stop_at;  ///< this score or more offers a rest, then ends the session (Fms)
+  std::optional<int> stop_at;  ///< this score or more ends the session early: a rest, then the exit
   std::optional<int> expect;   ///< the answer of an attentive person (Catch)
   /// Scale, Vas: score at which a pilot's curve is fitted; none: the scale's midpoint.
   std::optional<double> level;

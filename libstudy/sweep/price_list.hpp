@@ -15,10 +15,10 @@ namespace study {
 
 /// Errors that a sweep reports, each in per cent; smaller is better.
 enum class SweepError {
-  Front,    ///< E1: root mean square distance between the water's fronts, over the tank's length
-  Centre,   ///< E3: root mean square distance between the centres of mass, over the tank's length
-  Kinetic,  ///< E4: root mean square difference in kinetic energy, over the reference's maximum
-  Density,  ///< E2: mean over particles and instants of max(rho / rho_0 - 1, 0); needs no reference
+  Front,    ///< root mean square distance between the water's fronts, over the tank's length
+  Centre,   ///< root mean square distance between the centres of mass, over the tank's length
+  Kinetic,  ///< root mean square difference in kinetic energy, over the reference's maximum
+  Density,  ///< mean over particles and instants of max(rho / rho_0 - 1, 0); needs no reference
   Picture,  ///< this error and those below: see PictureError
   Fovea,
   Salient,
@@ -48,7 +48,8 @@ static_assert(static_cast<std::size_t>(SweepError::Flicker) + 1 == sweep_error_c
 using SweepErrors = std::array<double, sweep_error_count>;
 using WaterErrors = std::array<double, water_error_count>;
 
-/// Errors E1 to E4 of one run. base::Error unless both runs were sampled at the same instants.
+/// Front, Centre, Kinetic and Density of one run. base::Error unless both runs were sampled at the same
+/// instants.
 WaterErrors water_errors(const CellRun& run, const CellRun& reference, double tank_length_m);
 
 /// Mean, smallest and largest value over the seeds of a setting.
@@ -67,8 +68,8 @@ struct SettingResult {
   /// Time of a frame in ms, over the frames of all seeds.
   double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;
   double draw_ms_mean = 0;  ///< mean time of drawing, contained in ms_mean; NaN without pictures
-  /// E8: tau of Eq. 11 in frames/s, with the paper's a and b. Its frame intervals are the times of the
-  /// frames, but no shorter than the period of a display at the setting's frame rate.
+  /// Tau of the paper's Eq. 11 in frames/s, with the paper's a and b. Its frame intervals are the times of
+  /// the frames, but no shorter than the period of a display at the setting's frame rate.
   double tau = 0;
   std::array<Spread, sweep_error_count> errors = {};
 };

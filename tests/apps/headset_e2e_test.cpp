@@ -82,7 +82,7 @@ TEST_F(HeadsetE2e, EachThingThatIsNotThereIsNamed) {
   };
   for (const auto& [profile, says] :
        std::vector<Case>{{"headset=unavailable", "no headset is connected"},
-                         {"headset=unsupported", "knows no headsets"},
+                         {"headset=unsupported", "does not support headsets"},
                          {"stereo=0", "does not show a picture to each of two eyes"},
                          {"without=XR_KHR_opengl_enable", "does not offer XR_KHR_opengl_enable"}}) {
     const auto ended = on(profile);
