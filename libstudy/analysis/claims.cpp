@@ -73,7 +73,6 @@ ShownMethods shown_by(const Protocol& protocol) {
   return out;
 }
 
-/// Claims that compare ratings of methods shown one by one.
 stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   const std::string missing =
       protocol.design.pairs ? methods_in_pairs : missing_items(asked_questions(protocol));
@@ -93,7 +92,6 @@ stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::Anal
       shown.methods);
 }
 
-/// Claims that compare choices between pairs of methods.
 stats::ShownClaims claims_of_pairs(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.pairs) return all_left_out(plan, 2, no_pairs);
   if (!asks_choice_of_pair(protocol)) return all_left_out(plan, 2, no_choice_of_pair);

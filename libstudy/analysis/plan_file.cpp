@@ -128,7 +128,6 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   return plan;
 }
 
-/// A hypothesis about methods as JSON, as the plan declares it.
 Json claim_json(const stats::MethodClaim& one) {
   return {{"id", one.id},
           {"text", one.text},

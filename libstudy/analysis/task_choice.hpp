@@ -41,8 +41,8 @@ struct TaskSelection {
   std::optional<double> level = {};  ///< pilot: score at which the curve is fitted; empty: see level_of()
 };
 
-/// Score at which a pilot's curve is fitted. It is given by the selection, else by the plan, else by the
-/// protocol; the default is the middle of the scale.
+/// Score at which a pilot's curve is fitted: the level of the selection, else of the plan, else of the
+/// protocol, else the middle of the scale.
 double level_of(const TaskSelection& selection, const Question& question);
 
 bool has_answers(const TaskSession& session);

@@ -100,7 +100,6 @@ std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
                       impossible};
 }
 
-/// Fills a TaskData from the sessions of its protocol.
 class Collector {
  public:
   explicit Collector(TaskData& data) : data_(data) {}

@@ -46,7 +46,6 @@ CutCause cause_of(HeadsetState state) {
   return state == HeadsetState::Visible ? CutCause::Focus : CutCause::TakenOff;
 }
 
-/// Widens both eyes' fields of view by a margin.
 void widen(EyeViews& views, double margin_deg) {
   constexpr float most = 1.55f;  // rad; the picture is a plane, so its edges stay below a right angle
   const auto margin = static_cast<float>(margin_deg * std::numbers::pi / 180);

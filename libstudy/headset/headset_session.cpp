@@ -16,7 +16,6 @@ namespace study {
 
 namespace {
 
-/// The environment blend mode of all frames, and its name.
 constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
 /// Relative difference up to which a measured rate counts as the rate that an event reported.

@@ -37,8 +37,8 @@ class PictureCopy {
   ~PictureCopy();
   PictureCopy(const PictureCopy&) = delete;
   PictureCopy& operator=(const PictureCopy&) = delete;
-  /// Copies the part of the picture that has the target's size. The shown levels are those of the picture
-  /// times part.light if the runtime decodes the texture by its format.
+  /// Copies the part of the picture that has the target's size. A runtime that decodes the texture by its
+  /// format shows the picture's sRGB levels times part.light.
   void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:

@@ -29,7 +29,6 @@ std::optional<double> value_of(const stats::Result<double>& result) {
   return result ? std::optional(*result) : std::nullopt;
 }
 
-/// True if a higher score of the test's scale is better.
 bool higher_is_better(const stats::HypothesisTest& test) { return test.score == "realism"; }
 
 /// True if the test's claim is true in the simulated world, whose difference or preference is `truth`.

@@ -132,8 +132,7 @@ struct Protocol {
   bool needs_gaze = false;
   /// True: the camera uses the visual angle of the picture instead of each scene's angle.
   bool true_angle = false;
-  /// True if an option such as --trial-seconds changed the protocol: its data are marked as test data, and
-  /// the hash differs.
+  /// True after override_trial_seconds(): the protocol's data are marked as test data.
   bool test_data = false;
   /// Argument of override_trial_seconds(); none: the durations of the file. `text` and `trial_seconds`
   /// together rebuild the protocol.

@@ -92,7 +92,6 @@ void check_steps(const base::TomlTable& table, const std::vector<TrialStep>& ste
   if (!asked) table.fail("steps", "ask no question", "add \"ask ID\"");
 }
 
-/// Reads and checks the steps of each trial of a block.
 std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs) {
   const auto texts = block.strings("steps");
   std::vector<TrialStep> out;

@@ -48,7 +48,6 @@ std::string arrow(svg::Point from, svg::Point to) {
                    "fill=\"#000000\"");
 }
 
-/// The entries with a count above 0.
 std::vector<Entry> those_with_some(const std::vector<Entry>& all) {
   std::vector<Entry> out;
   for (const auto& entry : all)

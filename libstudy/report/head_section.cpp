@@ -24,7 +24,6 @@ std::vector<std::string> parts_where(const Field& root, Holds holds) {
   return out;
 }
 
-/// Names of the observer models of all documents, each once.
 std::string observers(const Field& root) {
   std::string out;
   std::vector<std::string> seen;

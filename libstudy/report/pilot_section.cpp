@@ -11,7 +11,6 @@ namespace study::report {
 
 namespace {
 
-/// The score grid that the results' list of cells describes.
 stats::ScoreGrid grid_of(const Field& cells) {
   std::set<double> mu, delta;
   for (const Field& cell : cells.entries()) {
@@ -47,7 +46,6 @@ void estimate_row(Table& table, const std::string& name, const Field& e) {
   table.row({name, a_with_interval(e), b_with_interval(e)});
 }
 
-/// A paragraph with the formula of the direct estimate's model.
 std::string model_of(const Field& pilot) {
   if (pilot["estimator"].words().empty()) return "";
   const std::string mu = typeset("mu"), delta = typeset("delta"), u = "<i>u</i>";
@@ -117,7 +115,6 @@ std::string form(const Field& pilot) {
   return out + table.html();
 }
 
-/// Paragraphs on how participants used the scale: reverse coders, drift and lapses.
 std::string raters(const Field& pilot) {
   std::string out;
   const Field all = pilot["raters"];

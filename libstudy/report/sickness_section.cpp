@@ -13,7 +13,6 @@ std::string quartiles(const Field& summary) {
   return fixed(summary["q1"], 1) + " to " + fixed(summary["q3"], 1);
 }
 
-/// Table cells: n, median, quartiles, mean and largest value.
 std::vector<std::string> described(const Field& summary) {
   return {count(summary["n"]), fixed(summary["median"], 1), quartiles(summary), fixed(summary["mean"], 2),
           fixed(summary["max"], 1)};

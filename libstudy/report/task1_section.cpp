@@ -33,7 +33,6 @@ std::string by_n_star(Table table, const Field& task1, const std::string& list, 
   return any ? table.html() : "";
 }
 
-/// The values of a list, separated by semicolons; "none" for an empty list.
 std::string listed(const Field& values) {
   std::string out;
   for (const Field& value : values.entries()) out += (out.empty() ? "" : "; ") + fixed(value, 2);

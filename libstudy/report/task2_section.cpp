@@ -52,7 +52,6 @@ std::string bars_caption(const Field& pairs) {
   return tests.empty() ? out : out + " Stars: " + tests + ", uncorrected / after Holm over all pairs.";
 }
 
-/// A note on participants who answered a pair more than once.
 std::string several_answers(const Field& several) {
   if (!(several["participants"].number() > 0)) return "";
   return paragraph(count(several["participants"]) + " of " + count(several["of"]) +

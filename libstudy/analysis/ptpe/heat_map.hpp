@@ -25,8 +25,8 @@ struct HeatMap {
   double a = 0, b = 0;  ///< coefficients of the curve mu = a exp(b delta): a in frames/s, b in s/frame
   std::array<double, 2> a_ci{}, b_ci{};
   double confidence = 0.95;
-  /// JSON pointers to the list of cells and to the estimate in the results. The figure's numbers carry them
-  /// as attribute data-field; empty: no attribute.
+  /// JSON pointers to the list of cells and to the estimate in the results. Each number of the figure has its
+  /// JSON pointer as attribute data-field; empty: no attribute.
   std::string cells_field, estimate_field;
 };
 

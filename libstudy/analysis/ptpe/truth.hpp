@@ -25,7 +25,7 @@ void check_comparable(const PilotFit& fit, const std::string& observer);
 /// Requires fit.ok().
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 
-/// Lines for the console: a heading, then for a and for b the interval and whether it holds the true value.
+/// Lines for the console: a heading, then for a and for b the interval and whether it covers the true value.
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery);
 base::Json recovery_json(const Recovery& recovery);
 

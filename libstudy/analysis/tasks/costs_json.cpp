@@ -15,7 +15,6 @@ namespace study {
 
 namespace {
 
-/// Mean of the added values; null in JSON if no value was added.
 struct RunningMean {
   double sum = 0;
   int count = 0;
@@ -86,7 +85,6 @@ void add_session(const TaskProtocol& protocol, const TaskSession& session, Stimu
   }
 }
 
-/// Adds the analysed answers to the stimuli in `out`.
 void add_answers(const TaskData& data, Stimuli& out) {
   for (const auto& report : data.reports) {
     const auto answer = report.answers.find(data.question.id);
@@ -101,7 +99,7 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// Reads the stimulus's scene from its file. A refusal if the file is missing, if a session did not record
+/// Reads the stimulus's scene from its file. Refused if the file cannot be read, if a session did not record
 /// the file's SHA-256, or if the stimulus has a level of effects other than the scene's.
 stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const ShownStimulus& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)

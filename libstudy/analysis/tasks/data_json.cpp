@@ -58,8 +58,8 @@ Json protocol_json(const TaskData& data) {
   return json;
 }
 
-/// True if the results depend on gaze. This is assumed of Task 1 and Task 2, and not of a pilot. Another
-/// design depends on gaze if it shows a method other than LoRes and HiRes.
+/// True if the results depend on gaze. Results of Task 1 and Task 2 are assumed to depend on gaze, those of a
+/// pilot are not. Another design depends on gaze if it shows a method other than LoRes and HiRes.
 bool refines(const TaskData& data) {
   if (data.task != TaskKind::Own) return data.task != TaskKind::Pilot;
   return std::any_of(data.protocol.methods.begin(), data.protocol.methods.end(), [](const std::string& one) {
@@ -100,7 +100,6 @@ std::vector<std::string> notes_of(const TaskData& data, const stats::AnalysisPla
   return notes;
 }
 
-/// Mean of the values present; null in JSON if none is present.
 struct Mean {
   int count = 0;
   double sum = 0;

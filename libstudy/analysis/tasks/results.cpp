@@ -43,8 +43,8 @@ std::string what_it_lacks(const TaskData& data) {
   return "protocol " + protocol.name + " " + lacks;
 }
 
-/// True if the protocol has factors of its own. `vip-stats study` analyses such a protocol. The results made
-/// here do not, since their tables by scene and n_* would pool the levels of these factors.
+/// True if the protocol has factors of its own. `vip-stats study` analyses such a protocol. This file does
+/// not, because its tables by scene and n_* would pool the levels of these factors.
 bool varies_own_factors(const TaskData& data) {
   return data.task == TaskKind::Own && data.protocol.whole && !data.protocol.whole->design.factors.empty();
 }

@@ -39,7 +39,6 @@ Json mean_json(const std::vector<stats::ExactMean>& values) {
   return n > 0 ? Json(sum / n) : Json();
 }
 
-/// A declared hypothesis with its result.
 struct TestedHypothesis {
   const DeclaredHypothesis* declared = nullptr;
   OutcomeValue value = OutcomeValue::Mean;

@@ -36,9 +36,10 @@ struct BudgetRequest {
   std::optional<double> frames_per_s = {};
 };
 
-/// Chooses a setting within the budget. Runs each candidate of `cells` from two new starts and takes the
-/// first whose new frames keep the budget too. The error in the returned file is over all starts, its times
-/// are over the new starts only. Calls `said` with a text for each candidate that fails. base::Error if the
+/// Chooses a setting within the budget. Runs the settings of within_budget() in turn, each from two new
+/// starts, and returns the first whose 95th percentile of the new frame times is within the budget too. The
+/// error in the returned file is over all starts, its times are over the new starts only. Calls `said` with a
+/// text for each setting whose new times exceed the budget. base::Error if the
 /// sweep has no setting as requested, or none with the requested error. base::Error also if no setting keeps
 /// the budget; this error names the nearest setting and by how much it exceeds the budget.
 sim::SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
