@@ -104,8 +104,8 @@ struct TaskData {
   /// and 2 for any other.
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
-  /// The reason why hypotheses that need gaze cannot be tested: gaze was not tracked in every analysed
-  /// session. Empty if it was.
+  /// The reason why hypotheses that need gaze cannot be tested: gaze was not tracked in some analysed
+  /// session. Empty if gaze was tracked in every analysed session.
   std::string gaze_problem() const;
 };
 

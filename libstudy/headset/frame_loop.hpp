@@ -46,8 +46,8 @@ struct HeadsetRecord {
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
-  /// True: the session's predicted times convert to the session's clock, and all steps between predicted
-  /// times so far were positive and within a tenth of a period of a whole number of periods.
+  /// True: the slots' predicted times convert to the session's clock, and so far every step between two
+  /// predicted times was positive and within a tenth of a period of a whole number of periods.
   bool trusted = false;
   int world = 0;  ///< as HeadsetRecord::world
   HeadsetSlot last;

@@ -24,15 +24,15 @@ struct BundleRequest {
 /// Writes the folder `out` with these files: a copy of each protocol; hypotheses.json (the hypotheses about
 /// methods that the protocols test, each with its margin); plan.toml (margins, levels, exclusion rules,
 /// seed); power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum
-/// -c`. Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and nothing is
-/// written, if `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same
+/// -c`. Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and `out` does
+/// not change, if `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same
 /// name or different levels for one question, if `power` cannot be read or is no JSON, or if the folder
 /// cannot be written.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
 /// The hypotheses about methods that the requested protocols do not test, each with the reason: "ID of task1:
-/// the protocol does not show FovFluid". A hypothesis that one protocol
-/// tests is listed for another one only if that one tests none.
+/// the protocol does not show FovFluid". If another protocol tests the hypothesis, it is listed only for a
+/// protocol that tests no hypothesis at all.
 std::vector<std::string> untested_claims(const BundleRequest& request);
 
 /// A bundle as read from disk.

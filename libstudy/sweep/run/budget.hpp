@@ -39,9 +39,9 @@ struct BudgetRequest {
 /// Chooses a setting within the budget. Runs the settings of within_budget() in turn, each from two new
 /// starts, and returns the first whose 95th percentile of the new frame times is within the budget too. The
 /// error in the returned file is over all starts, its times are over the new starts only. Calls `said` with a
-/// text for each setting whose new times exceed the budget. base::Error if the
-/// sweep has no setting as requested, or none with the requested error. base::Error also if no setting keeps
-/// the budget; this error names the nearest setting and by how much it exceeds the budget.
+/// text for each setting whose new times exceed the budget. base::Error if the sweep has no setting as
+/// requested, or none with the requested error. base::Error also if every setting exceeds the budget; this
+/// error names the setting that exceeds it least, and by how much.
 sim::SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
                                 const BudgetRequest& request,
                                 const std::function<StoredCell(const SweepCell&)>& run,
