@@ -237,7 +237,7 @@ TEST_F(BreachGl, RateThatIsNotListed) {
   expected = "xrRequestDisplayRefreshRateFB: a rate that is not listed";
 }
 
-// Suspicious but allowed use is noted and is not a breach.
+// Use that is suspicious but allowed is logged as a note, not as a breach.
 TEST(NoteGl, WhatTheSpecificationAllows) {
   Client client("at=5:render/0");
   client.frames_until(XR_SESSION_STATE_FOCUSED);

@@ -1,6 +1,6 @@
 #pragma once
-/// Wrapper of the runtime's functions: one call at a time; a function refuses by an exception, which the
-/// wrapper turns into the result.
+/// Wrapper around the runtime's OpenXR functions. It runs one call at a time, logs it, and turns the
+/// exception Refusal into the call's result.
 
 #include <algorithm>
 #include <map>
@@ -12,19 +12,19 @@
 
 namespace simulated {
 
-/// Held during every call. xrWaitFrame releases it while it waits.
+/// The mutex that is locked during every call. xrWaitFrame unlocks it while it waits.
 std::mutex& lock();
 /// Name of the OpenXR function that is running on this thread.
 const char*& current_call();
 
-/// Appends a line to the file that VIP_XR_LOG names.
+/// Appends a line to the file that VIP_XR_LOG names. Without this variable nothing is logged.
 void log_line(const std::string& text);
 /// Logs that the caller broke the specification.
 void breach(const std::string& text);
 /// Logs something that the specification allows but that is probably a mistake.
 void note(const std::string& text);
 
-/// Ends a call early.
+/// Exception that ends a call with this result.
 struct Refusal {
   XrResult result;
 };
@@ -47,7 +47,8 @@ struct Name {
   constexpr Name(const char (&name)[n]) { std::copy_n(name, n, text); }
   char text[n];
 };
-/// How calls are logged. Those made every frame share the frame's own line.
+/// Whether each call has a line in the log. Calls that a program makes every frame have none: xrEndFrame
+/// writes one line for the whole frame.
 enum class Logged { each_call, frame_line };
 
 template <Name name, Logged logged, auto function>
@@ -82,7 +83,7 @@ template <class T>
 void need_type_or_null(const T* structure, XrStructureType type) {
   if (structure) need_type(structure, type);
 }
-/// The structure of that type in the chain after another one, or null.
+/// The structure of this type in the chain that begins at `next`, or null.
 template <class T>
 T* find_chained(const void* next, XrStructureType type) {
   for (auto* one = static_cast<const XrBaseInStructure*>(next); one; one = one->next) {
@@ -94,7 +95,7 @@ T* find_chained(const void* next, XrStructureType type) {
 /// Refuses a chain with a structure of an extension that is not enabled.
 void need_chain(const void* next);
 
-/// Returns an array by OpenXR's two-call idiom. `write`: (index, value).
+/// Returns an array by OpenXR's two-call idiom: calls write(index, value) for each value.
 template <class T, class Write>
 XrResult give_array(const std::vector<T>& values, std::uint32_t capacity, std::uint32_t* count, Write write) {
   need(count, XR_ERROR_VALIDATION_FAILURE, "no place for the count");

@@ -1,6 +1,6 @@
 #pragma once
-/// A program that uses the headset correctly, on the simulated runtime through the real loader. Tests change
-/// one thing at a time to be wrong.
+/// A client program that uses OpenXR correctly, on the simulated runtime through the real loader. Tests make
+/// one call or argument of it wrong.
 
 #include <array>
 #include <functional>
@@ -44,7 +44,8 @@ class Client {
   void make_session();
   void make_swapchains(std::int64_t format = GL_SRGB8_ALPHA8, std::uint32_t array = 1);
 
-  /// Handles all waiting events as a program must: begins, ends, destroys.
+  /// Handles all waiting events: begins the session at READY, ends it at STOPPING, and stores all other
+  /// events.
   void poll();
   /// Handles events and runs one frame. Returns the result of xrEndFrame, or of the first call that failed.
   XrResult frame(const Spoil& spoil = {});
@@ -53,7 +54,8 @@ class Client {
 
   XrResult wait() { return call<PFN_xrWaitFrame>("xrWaitFrame")(session, nullptr, &state); }
   XrResult begin() { return call<PFN_xrBeginFrame>("xrBeginFrame")(session, nullptr); }
-  /// Draws both eyes if the frame should render, and ends the frame.
+  /// Draws both eyes if the frame should render and the head's orientation is valid, applies `spoil` to the
+  /// arguments of xrEndFrame, and ends the frame.
   XrResult end(const Spoil& spoil = {});
   /// Acquires, waits for and releases the eye's image, filled with a colour.
   void draw(int eye, const std::array<float, 4>& colour = {0.25f, 0.5f, 0.75f, 1});
@@ -61,7 +63,7 @@ class Client {
   XrSpaceLocation locate(XrSpace what, XrSpace from, XrTime time, void* next = nullptr);
   XrSpace make_space(XrReferenceSpaceType type);
 
-  /// A function of the runtime; null if it has none of that name.
+  /// A function of the runtime by its OpenXR name; null if the runtime has no such function.
   template <class F>
   F call(const char* name) const {
     return reinterpret_cast<F>(find(name));
@@ -82,8 +84,8 @@ class Client {
   std::uint32_t width = 0, height = 0;
   XrFrameState state = blank<XrFrameState>(XR_TYPE_FRAME_STATE);
   XrSessionState session_state = XR_SESSION_STATE_UNKNOWN;
-  std::vector<XrSessionState> states;     ///< all that were reported
-  std::vector<XrEventDataBuffer> events;  ///< all other events
+  std::vector<XrSessionState> states;     ///< all states that were reported
+  std::vector<XrEventDataBuffer> events;  ///< all events other than changes of state
   bool running = false;
 
  private:

@@ -6,7 +6,8 @@ namespace simulated {
 
 namespace {
 
-/// A program waits by polling while the headset is off, so polling advances time.
+/// Advances the virtual clock by a period if no session runs. A program whose headset is off calls only
+/// xrPollEvent, so time would stand still otherwise.
 void wait_a_period() {
   Runtime& all = runtime();
   const bool running = !all.sessions.empty() && all.sessions.begin()->second.running;

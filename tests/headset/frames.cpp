@@ -16,7 +16,8 @@ Session& need_running(XrSession session) {
   return found;
 }
 
-/// A wait returns only after the previous frame has begun.
+/// Waits until xrBeginFrame was called for the previous frame, or the session ended. Refuses after `patience`
+/// s on the real clock.
 void await_begin(XrSession session) {
   const auto over = [&] {
     const auto found = runtime().sessions.find(number_of(session));
@@ -27,7 +28,8 @@ void await_begin(XrSession session) {
        "the frame before was never begun");
 }
 
-/// The next slot of the display that can still be met.
+/// Time of the next refresh of the display that is at least half a period away. The script's event `drop`
+/// skips refreshes.
 XrTime next_slot() {
   Runtime& all = runtime();
   const XrDuration step = period(), lead = 3 * step / 2;
@@ -39,7 +41,7 @@ XrTime next_slot() {
   return slot;
 }
 
-/// Pseudo-random between -1 and 1, equal in every run.
+/// Pseudo-random number in [-1, 1) for a frame's number; the same in every run.
 double noise(long index) {
   const auto mixed = static_cast<std::uint32_t>(index) * 2654435761u;
   return (mixed >> 8) / 8388608.0 - 1;
@@ -74,7 +76,7 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
   if (const double seconds = std::exchange(all.hang_seconds, 0); seconds > 0) hang(seconds);
   need_running(session);
   Frame frame = next_frame(index);
-  Session& found = need_running(session);  // again, because it may have ended meanwhile
+  Session& found = need_running(session);  // again, because the session may have ended during the wait
   if (held_up) all.clock.last_end = now();
   step_state(session);
   const bool seen = found.state == XR_SESSION_STATE_VISIBLE || found.state == XR_SESSION_STATE_FOCUSED;
@@ -117,8 +119,8 @@ void check_end(const Session& session, const XrFrameEndInfo* info) {
     note("layers although shouldRender was false (allowed)");
 }
 
-/// Notes a frame that ends too late: a running session's frames must come every period, unless the script
-/// delayed the program.
+/// Logs a note if more than two periods have passed since the previous xrEndFrame. A delay by the script's
+/// events `drop` and `hang` does not count.
 void note_starving() {
   Clock& clock = runtime().clock;
   const XrTime time = now();

@@ -8,7 +8,7 @@ constexpr const char* elsewhere =
     "the session's context cannot be made current: another thread holds it, or it is gone";
 
 void leave_error() {
-  if (runtime().profile.leave_error) glEnable(GL_TEXTURE_2D + 0x7000);  // no such capability
+  if (runtime().profile.leave_error) glEnable(GL_TEXTURE_2D + 0x7000);  // no such capability: GL_INVALID_ENUM
 }
 
 }  // namespace

@@ -7,11 +7,12 @@
 
 namespace simulated {
 
-/// Current while the object lives. Afterwards the profile decides: the previous context, as runtimes should
-/// leave it, or no context or one of the runtime's own, as some do.
+/// The session's context is current while the object lives. The destructor follows `leave_context` of the
+/// profile: "kept" restores the previous context, as runtimes should; "none" leaves no context current, and
+/// "other" one of the runtime's own, as some runtimes do. With a GLX context "other" leaves none either.
 class SessionContext {
  public:
-  /// Refuses if the context is current on another thread.
+  /// Refuses if the context cannot be made current, for example because it is current on another thread.
   explicit SessionContext(const Graphics& graphics);
   ~SessionContext();
   SessionContext(const SessionContext&) = delete;
@@ -27,7 +28,7 @@ class SessionContext {
   GLXDrawable drawable_;
 };
 
-/// Makes and destroys the runtime's own context, if the profile asks for one.
+/// Make and destroy the runtime's own EGL context if `leave_context` is "other".
 void make_other_context(Graphics& graphics);
 void destroy_other_context(Graphics& graphics);
 

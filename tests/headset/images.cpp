@@ -24,7 +24,8 @@ std::uint8_t encode(float linear) {
   return static_cast<std::uint8_t>(std::lround(255 * y));
 }
 
-/// Rows of the texture from the bottom up. Textures that are not sRGB hold linear values.
+/// RGBA values of the part's rectangle, rows from the bottom up, in the texture's encoding. Only sRGB
+/// textures are not linear.
 template <class T>
 std::vector<T> read_texture(const XrSwapchainSubImage& part, GLenum type) {
   const Swapchain& swapchain = runtime().swapchains.at(number_of(part.swapchain));
@@ -56,7 +57,7 @@ Picture read_picture(const XrSwapchainSubImage& part) {
   return out;
 }
 
-/// FNV-1a.
+/// The 64-bit FNV-1a hash of the picture's bytes.
 std::uint64_t hash_of(const Picture& picture) {
   std::uint64_t hash = 14695981039346656037u;
   for (const std::uint8_t byte : picture.rgba) hash = (hash ^ byte) * 1099511628211u;

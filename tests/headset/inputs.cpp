@@ -13,7 +13,8 @@ const Action& need_action(const Session& session, XrAction handle) {
   return action;
 }
 
-/// The script's value for a part of the right controller. The left one is absent.
+/// Value of a controller's part, found by the end of its path. It comes from the script. Select, trigger and
+/// A are also 1 while the hand presses a target on a page.
 Input::Value value_of(const std::string& source) {
   const auto knob = [](const char* name) { return runtime().knobs.at(name); };
   const auto ends = [&](const char* part) { return source.ends_with(part); };
@@ -65,7 +66,7 @@ XrResult sync(XrSession session, const XrActionsSyncInfo* info) {
   return success(found);
 }
 
-/// Combined state of an action's sources: the largest value.
+/// Combined state of an action's sources. `value` is the one of the largest magnitude.
 struct Sum {
   bool active = false, changed = false;
   Input::Value value{};

@@ -68,7 +68,7 @@ XrResult get_instance_properties(XrInstance instance, XrInstanceProperties* out)
   return XR_SUCCESS;
 }
 
-/// "XR_SUCCESS" and so on, or the number.
+/// A name such as "XR_SUCCESS". A value without a name gives `unknown` followed by the number.
 std::string name_of(const std::map<int, std::string>& names, int value, const std::string& unknown) {
   const auto found = names.find(value);
   return found == names.end() ? unknown + std::to_string(value) : found->second;

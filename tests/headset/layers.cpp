@@ -47,8 +47,8 @@ void check_fov(const XrFovf& fov) {
     need(std::fabs(angle) < right_angle, XR_ERROR_VALIDATION_FAILURE, "a field of view beyond 90 degrees");
   need(fov.angleLeft != fov.angleRight && fov.angleUp != fov.angleDown, XR_ERROR_VALIDATION_FAILURE,
        "a field of view that is empty");
-  // The specification allows it and flips the picture, but a program that submits located views never means
-  // it.
+  // OpenXR allows a flipped field of view, which mirrors the picture. A program that submits located views
+  // never intends it, so it is logged as a breach.
   if (fov.angleLeft > fov.angleRight || fov.angleDown > fov.angleUp)
     breach("a field of view that is flipped");
 }
@@ -65,8 +65,9 @@ bool same(const XrFovf& a, const XrFovf& b) {
          near(a.angleDown, b.angleDown);
 }
 
-/// The views must be in the order in which they were located. A held image keeps the pose that it was drawn
-/// for.
+/// Refuses a view that has the pose or the field of view that was located for the other eye. All stored calls
+/// of xrLocateViews count, because a program may submit an old image again with the pose for which it was
+/// drawn.
 void check_eye(const Session& session, const XrCompositionLayerProjection& layer, std::size_t eye) {
   const XrCompositionLayerProjectionView& view = layer.views[eye];
   std::array<bool, 2> pose_of{}, fov_of{};

@@ -16,9 +16,10 @@ void queue_event(T event, XrStructureType type) {
 }
 const char* name_of(XrSessionState state);
 void enter(XrSession session, XrSessionState state);
-/// Takes one step up towards the script's state, or all steps down at once.
+/// Moves a running session's state one step up towards Runtime::aim, or down to it through all states
+/// between. The first step up comes after a frame has ended.
 void step_state(XrSession session);
-/// Enters READY if the headset is worn and the session waits for it.
+/// Moves an idle session to READY if the headset is worn and the session is not exiting.
 void offer_ready();
 
 // script.cpp
@@ -27,13 +28,14 @@ void play_script(XrSession session, long frame);
 
 // rates.cpp
 void change_rate(float hertz);
-/// Changes to the requested rate.
+/// Changes to the rate that the program requested last, if there is such a request.
 void take_wanted_rate();
 
 // time.cpp
 XrTime now();
 XrDuration period();
-/// Waits until `time`, or sets the virtual clock to it. Releases the lock meanwhile.
+/// On the real clock sleeps until `time` with lock() released. On the virtual clock advances the time to
+/// `time`.
 void wait_until(XrTime time);
 
 // layers.cpp
@@ -42,12 +44,13 @@ struct Shown {
   const XrSwapchainSubImage* part;
   std::string name;  ///< "left", "right" or "quad", with the layer's number unless that is 0
 };
-/// Refuses a frame that breaks the specification; returns its images, and `text` for the log.
+/// Refuses a frame that breaks the specification. Returns its images, and in `text` their description for the
+/// log.
 std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& info, std::string& text);
 
 // images.cpp
-/// Writes the frame's images if the profile asks for it, and returns their content for the log. The session's
-/// context must be current.
+/// Writes the images as files if the profile lists the frame in `dump`. Returns their hashes for the log if
+/// files are written or `hash` is set. The session's context must be current.
 std::string look_at(const std::vector<Shown>& images, long frame);
 
 // motion.cpp
@@ -81,7 +84,8 @@ std::string subaction_of(const Action& action, XrPath path);
 
 // inputs.cpp
 std::string controller_profile();
-/// Sources that move an action now; empty while it is not active.
+/// Sources that are bound to an action and present. Empty if the session had no focus at the last
+/// xrSyncActions, or that call did not name the action's set.
 std::vector<std::string> sources_of(const Session& session, std::uint64_t action,
                                     const std::string& subaction);
 

@@ -1,4 +1,4 @@
-/// Paths, and the interaction profiles that they belong to.
+/// Paths, and the parts of controllers for which a program may suggest bindings.
 
 #include <cstring>
 

@@ -17,7 +17,7 @@ Pose aimed(Vector from, Vector to) {
   return {turned(yaw / radians_per_degree, pitch / radians_per_degree, 0), from};
 }
 
-/// Number of targets finished on this page, and the elapsed fraction of the current one's time.
+/// Index of the current target, and the elapsed fraction of the time for which it is held.
 struct Turn {
   std::size_t target;
   double part;
@@ -29,7 +29,7 @@ Turn turn_at(XrTime time) {
   return {static_cast<std::size_t>(whole) % all.profile.targets.size(), turns - whole};
 }
 
-/// The current target on the shown page, in the runtime's frame.
+/// Position of the current target in the space STAGE, m.
 Vector target_at(XrTime time) {
   const Runtime& all = runtime();
   const auto [u, v] = all.profile.targets[turn_at(time).target];
@@ -57,7 +57,8 @@ bool presses_page() {
 
 Gaze gaze_at(XrTime time) {
   const Runtime& all = runtime();
-  // The newest available sample of the eye tracker's own time grid.
+  // The newest sample that has arrived. The eye tracker takes its samples on a time grid of its own, which
+  // begins 3.1 ms after the clock's start. A sample arrives `gaze_age` ms after it was taken.
   const double rate = knob("gaze_rate");
   const auto age = static_cast<XrDuration>(1e6 * knob("gaze_age"));
   const XrDuration since = std::min(time, now()) - age - all.clock.start - 3'100'000;

@@ -60,7 +60,7 @@ std::vector<T> read_numbers(const std::string& text) {
   return out;
 }
 
-/// "0.5:0.4,0.5:0.9"
+/// Parses "0.5:0.4,0.5:0.9": places on a page, as fractions from its left and its top.
 std::vector<std::pair<double, double>> read_targets(const std::string& text) {
   std::vector<std::pair<double, double>> out;
   for (const std::string& entry : split(text, ','))
@@ -68,7 +68,7 @@ std::vector<std::pair<double, double>> read_targets(const std::string& text) {
   return out;
 }
 
-/// "100:focus/0,160:focus/1"
+/// Parses "100:focus/0,160:focus/1": frame, name and value of each event.
 std::vector<ScriptedEvent> read_script(const std::string& text) {
   std::vector<ScriptedEvent> out;
   for (const std::string& entry : split(text, ',')) {
@@ -170,7 +170,7 @@ const std::map<std::string, double> knobs{
     {"blink_every", 0},
     {"blink_length", 0.15},
 };
-/// Other events of the script.
+/// Names of script events that set no value of `knobs`.
 const std::vector<std::string> happenings{"focus",         "shown",  "off",     "lost",       "lost_now",
                                           "instance_lost", "exit",   "unknown", "recentre",   "rate",
                                           "drop",          "repeat", "hang",    "events_lost"};

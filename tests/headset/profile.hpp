@@ -10,7 +10,7 @@
 
 namespace simulated {
 
-/// An event during the wait for a frame.
+/// An event that the script triggers while the program waits for this frame.
 struct ScriptedEvent {
   long frame = 0;  ///< counted over the whole process, from 0
   std::string name;
@@ -40,7 +40,7 @@ struct Profile {
   std::map<std::string, double> knobs;        ///< values that the script may change, by name
   std::vector<ScriptedEvent> script;
   bool gaze = true;    ///< supportsEyeGazeInteraction
-  bool opaque = true;  ///< this blend mode is offered besides additive
+  bool opaque = true;  ///< the opaque blend mode is offered besides the additive one
   bool stereo = true;
   bool positive = false;     ///< calls that may return a positive success code do so
   bool leave_error = false;  ///< calls that may use GL leave a GL error behind

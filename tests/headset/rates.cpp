@@ -20,7 +20,8 @@ XrResult get_rate(XrSession session, float* out) {
   return success(found);
 }
 
-/// Takes effect at the next frame, or at once if no frames run.
+/// The rate changes at the next xrWaitFrame, or at once if the session does not run. A request of 0 Hz, or
+/// any request while `ignores_rate` is set, changes nothing.
 XrResult request_rate(XrSession session, float hertz) {
   const Session& found = need_session(session);
   const auto& rates = runtime().profile.rates;

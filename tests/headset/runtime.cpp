@@ -1,4 +1,4 @@
-/// The one runtime of a process, its log, and the checks of every call.
+/// The one runtime of a process, its log, and checks that many calls share.
 
 #include <cstdlib>
 #include <fstream>

@@ -77,7 +77,7 @@ TEST(SimulatedSessionGl, FramesAreWaitedForOnAThreadOfTheirOwn) {
     waits.join();
     EXPECT_EQ(client.begin(), XR_SUCCESS);
     XrFrameState state = client.state;
-    std::thread ahead([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });  // while this frame is drawn
+    std::thread ahead([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });  // before this frame ends
     ahead.join();
     std::swap(state, client.state);
     EXPECT_EQ(client.end(), XR_SUCCESS);
@@ -99,7 +99,7 @@ TEST(SimulatedSessionGl, APositiveCodeIsASuccess) {
 TEST(SimulatedSessionGl, AStarvedLoopIsNoted) {
   Client client("clock=real");
   client.frames_until(focused);
-  const std::size_t before = client.lines("note").size();  // a slow machine starves as well
+  const std::size_t before = client.lines("note").size();  // a slow machine may have caused notes
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   client.frame();
   ASSERT_GT(client.lines("note").size(), before);

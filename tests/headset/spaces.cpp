@@ -66,7 +66,7 @@ bool is_gaze(const Space& space) {
 
 Placed to_placed(const Pose& pose, bool moves) {
   const auto& knobs = runtime().knobs;
-  // An invalid pose has no usable values.
+  // OpenXR leaves the value of an invalid pose undefined. Here all its components are 0.
   if (moves && knobs.at("orientation") == 0) return {0, {}};
   XrSpaceLocationFlags flags = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT |
                                XR_SPACE_LOCATION_POSITION_VALID_BIT |
@@ -109,7 +109,7 @@ Placed locate(const Space& what, const Space& from, XrTime time) {
   if (!is_gaze(what)) return to_placed(pose, what.action || from.action || what.type != from.type);
   const Gaze gaze = gaze_at(time);
   if (!gaze.valid) return {0, {}};
-  // VALID without TRACKED marks a sample of lower quality.
+  // The eye tracker's samples of lower quality are VALID without TRACKED.
   return {valid_bits | (gaze.tracked ? tracked_bits : 0), to_xr(pose)};
 }
 

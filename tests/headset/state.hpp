@@ -93,7 +93,7 @@ struct Binding {
   std::string source;
 };
 
-/// The topmost quad layer.
+/// The last quad layer of the newest frame.
 struct Page {
   Space space;
   Pose pose;
@@ -101,19 +101,20 @@ struct Page {
   XrTime since;
 };
 
-/// From a time on, the reference space LOCAL is turned to the left by an angle.
+/// A recentring: from the time `from` on, the reference space LOCAL is turned further to the left by
+/// `degrees`.
 struct LocalTurn {
   XrTime from;
   double degrees;
 };
 
-/// The runtime's time. It is not a system clock; XrTime minus `ahead_of_monotonic` is CLOCK_MONOTONIC.
+/// The runtime's time. On the real clock an XrTime is CLOCK_MONOTONIC plus `ahead_of_monotonic`.
 struct Clock {
   bool real = false;
   XrTime start = 0;
   XrTime now = 0;             ///< on the virtual clock
   XrTime last_slot = 0;       ///< the newest slot that was returned
-  XrTime last_predicted = 0;  ///< the time that was predicted for it
+  XrTime last_predicted = 0;  ///< the time that was predicted for the newest slot
   XrTime last_end = 0;        ///< when the newest frame of a running session ended
 };
 constexpr XrTime ahead_of_monotonic = 1'000'000'000'000;
@@ -140,7 +141,7 @@ struct Runtime {
   long instance_lost_at = -1;   ///< frame from which every call fails
   bool asked_graphics = false;  ///< xrGetOpenGLGraphicsRequirementsKHR was called
   bool asked_system = false;
-  XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state towards which a running session goes
+  XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state towards which a running session moves
   XrTime worn_from = 0;                           ///< time until which the headset is off
   int dropped = 0;                                ///< number of slots that the next wait skips
   bool repeats = false;                           ///< the next wait predicts the last time again
@@ -148,7 +149,8 @@ struct Runtime {
   std::vector<LocalTurn> local_turns;             ///< turns of the space LOCAL by recentring
 };
 Runtime& runtime();
-/// Forgets everything if the profile or the log file has changed.
+/// Resets all state and reads the profile again if VIP_XR_PROFILE or VIP_XR_LOG has changed since the last
+/// call.
 void restart();
 /// Notified when a frame begins or a session ends.
 std::condition_variable_any& frame_begun();
@@ -168,7 +170,7 @@ template <class Handle>
 Handle as_handle(std::uint64_t number) {
   return reinterpret_cast<Handle>(number);
 }
-/// A handle that was never used before.
+/// Adds an object to `living` under a handle that was never used before.
 template <class Handle, class T>
 Handle new_handle(std::map<std::uint64_t, T>& living, T object) {
   const std::uint64_t number = runtime().next_handle++ << 4;
@@ -182,7 +184,7 @@ T& find(std::map<std::uint64_t, T>& living, Handle handle, const char* what) {
   return found->second;
 }
 
-/// Each refuses handles that do not exist, and fails if they are lost.
+/// Each refuses a handle that does not exist, and fails if the instance or the session is lost.
 void need_instance(XrInstance instance);
 void need_system(XrInstance instance, XrSystemId system);
 Session& need_session(XrSession session);
@@ -191,10 +193,11 @@ void need_session_number(std::uint64_t session);
 void need_views(XrViewConfigurationType kind);
 /// Refuses if the extension is not enabled.
 void need_enabled(const char* extension);
-/// XR_SUCCESS, or another success code of the runtime.
+/// XR_SESSION_LOSS_PENDING if the session is in the state LOSS_PENDING or the profile sets `positive`;
+/// otherwise XR_SUCCESS.
 XrResult success(const Session& session);
 
-/// Forgets a session and the objects that belong to it.
+/// Deletes a session, its swapchains and its spaces, and detaches all action sets.
 void end_session_objects(std::uint64_t session);
 
 }  // namespace simulated

@@ -1,4 +1,4 @@
-/// The runtime's clock, and its relation to the system's.
+/// The runtime's clock, and its conversion from and to timespec.
 
 #include <cmath>
 #include <thread>

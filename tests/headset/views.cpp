@@ -21,7 +21,7 @@ XrResult locate_views(XrSession session, const XrViewLocateInfo* info, XrViewSta
   const XrResult result = give_array(eyes, capacity, count, [&](std::size_t i, int eye) {
     need_type(&views[i], XR_TYPE_VIEW);
     const Placed place = locate_eye(eye, space, info->displayTime);
-    state->viewStateFlags = place.flags;  // with the bits of a space's location
+    state->viewStateFlags = place.flags;  // XrViewStateFlags has the same bits
     views[i].pose = located.poses[i] = place.pose;
     views[i].fov = located.fovs[i] = fov_of(eye);
   });

@@ -7,7 +7,7 @@
 
 namespace simulated {
 
-/// Runs Xvfb while the object lives; its context is current on the thread that made it.
+/// Runs Xvfb while the object lives. Its OpenGL context is current on the thread that made the object.
 class XScreen {
  public:
   /// size: "640x480". std::runtime_error if there is no Xvfb, or no OpenGL 4.5 on it.

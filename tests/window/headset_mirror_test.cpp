@@ -14,7 +14,7 @@
 #include "tests/apps/headset_runs.hpp"
 #include "tests/apps/study_test_support.hpp"
 
-// X comes last because of its macros. The second header removes the worst of them.
+// Xlib.h defines macros such as None and Status, so X headers come last. x_screen.hpp undefines some of them.
 #include <X11/Xutil.h>
 
 #include "tests/headset/x_screen.hpp"
@@ -52,7 +52,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
   static constexpr int side = study::MirrorPicture::side_px;
 
   HeadsetMirrorGl() {
-    glXMakeCurrent(screen_.binding().xDisplay, 0, nullptr);  // the headset has its own context
+    glXMakeCurrent(screen_.binding().xDisplay, 0, nullptr);  // the headset has a context of its own
     ::setenv("DISPLAY", screen_.name().c_str(), 1);
   }
   ~HeadsetMirrorGl() override {
@@ -60,7 +60,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
   }
 
-  /// 20 Hz, so that a busy machine does not disturb the test.
+  /// Starts a display of 20 Hz, slow enough for a busy machine.
   study::HeadsetDisplay& start(const std::string& profile = "") {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
     display_.emplace(study::SlotDrive::Thread,
@@ -104,7 +104,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     return {static_cast<int>(value >> 16 & 255), static_cast<int>(value >> 8 & 255),
             static_cast<int>(value & 255)};
   }
-  /// Runs slots until the place has this colour, or a time limit is over.
+  /// Runs slots until this place has the colour, for at most 10 s. Returns the last colour.
   Colour comes_to(const Colour& wanted, double x, double y) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     Colour found = pixel(x, y);
@@ -132,8 +132,9 @@ TEST_F(HeadsetMirrorGl, APageStandsWhereTheLeftEyeSeesIt) {
   open(false);
   show_page();
   EXPECT_EQ(comes_to(yellow, 0.5, 0.5), yellow);
-  // 20 of 60 degrees: tan 10 / tan 30 from the middle; the left eye sees it half the distance between the
-  // eyes further right.
+  // The mirror shows 60 degrees of the left eye, and the page is 20 degrees wide at 2 m. Half the page takes
+  // 0.5 tan 10 / tan 30 of the mirror's width. The left eye is 0.0315 m left of the head, so the page lies
+  // 0.5 (0.0315 / 2) / tan 30 right of the mirror's middle.
   const double half = 0.5 * 0.17633 / 0.57735, shift = 0.5 * 0.0315 / 2 / 0.57735;
   for (const double side_of : {-1.0, 1.0}) {
     EXPECT_EQ(pixel(0.5 + shift + side_of * (half - 0.006), 0.5), yellow) << side_of;
@@ -171,8 +172,8 @@ TEST_F(HeadsetMirrorGl, AnImageThatIsHeldStaysInTheWorldWhileTheHeadTurns) {
   show_stimulus();
   EXPECT_EQ(comes_to(red, 0.5, 0.5), red);
   EXPECT_EQ(pixel(0.815, 0.5), black);  // outside the picture's 30 degrees
-  // After a turn of the head by 20 degrees to the left, the picture's middle is tan 20 / tan 30 further
-  // right.
+  // After a turn of the head by 20 degrees to the left, the picture's middle is 0.5 tan 20 / tan 30 = 0.315
+  // of the mirror's width further right.
   EXPECT_EQ(comes_to(red, 0.815, 0.5), red);
   EXPECT_EQ(pixel(0.5, 0.5), black);
   close();
@@ -215,7 +216,7 @@ TEST_F(HeadsetMirrorGl, WhoClosesItLooksOnNoMore) {
   XFree(children);
   XFlush(display);
   EXPECT_EQ(comes_to(black, 0.5, 0.5), black);
-  for (int i = 0; i < 5; ++i) display_->turn();  // the session continues
+  for (int i = 0; i < 5; ++i) display_->turn();
   close();
 }
 
