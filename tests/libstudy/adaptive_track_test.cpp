@@ -35,7 +35,7 @@ Protocol read(const std::string& text) {
   return protocol;
 }
 
-/// hitch_quest with few trials and hitches that fit into half a second.
+/// The protocol quest_text with 12 trials, and with a hitch every 0.4 s, so that a trial of 0.5 s has one.
 std::string short_quest() {
   std::string text = changed(quest_text, "trials = 40", "trials = 12");
   for (std::size_t at = 0; (at = text.find("period_s = 2", at)) != std::string::npos;)
@@ -43,7 +43,7 @@ std::string short_quest() {
   return text;
 }
 
-/// A pilot whose settings the placement chooses.
+/// A protocol whose adaptive procedure "ptpe" chooses among 15 settings of mean and SD of the frame rate.
 std::string placement_text() {
   std::string levels;
   for (const int mean : {10, 20, 30, 45, 60})
@@ -142,7 +142,8 @@ TEST(AdaptiveTrack, PairsKeepTheStandardAndTheirOrder) {
   EXPECT_EQ(standard_first, static_cast<int>(cells.size()) / 2);
 }
 
-/// Number of `people` whose threshold lies in the 95 % interval of their 40 trials.
+/// Simulates this number of people with 40 trials each. Returns for how many the 95 % interval of the
+/// threshold contains the true threshold.
 int recovered(int people) {
   const Protocol protocol = parse_protocol(quest_text, "own.toml");
   int covered = 0;

@@ -52,7 +52,7 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return path;
 }
 
-/// Stores the next answer of P01 step by step and is killed after the step `until`.
+/// answer_by_hand() stores the next answer of P01 step by step and kills its process after the step `until`.
 enum class Until { Statements, Journal, Commit, Kept };
 void answer_by_hand(const fs::path& path, Until until) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
@@ -218,7 +218,7 @@ TEST(AnswerJournal, IsHealedWhereverItsLastLinesAreTorn) {
   EXPECT_EQ(test::lines_of(path), truth);
 }
 
-// A power cut may lose an unsynced sector and keep a later one.
+// A power cut may lose one unsynced sector of a file and keep a later one.
 TEST(AnswerJournal, LastRowsOfWhichALineIsLostAreNotTakenOver) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder), file = journal_beside(path);
@@ -270,7 +270,8 @@ TEST(AnswerJournal, ThatKnowsMoreThanTheDatabaseIsAnErrorThatNamesSalvage) {
 TEST(AnswerJournal, ThatCannotBeWrittenIsToldBeforeTheAnswerIsKept) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);
-  // A limit on file sizes that only the journal reaches.
+  // The long line makes the journal larger than the database. The limit on the size of all files is then the
+  // journal's size, so only the journal reaches it.
   constexpr std::size_t full = 4 << 20;
   std::ofstream(journal_beside(path), std::ios::app)
       << R"({"kept":0,"more":")" << std::string(full, 'x') << "\"}\n";

@@ -73,7 +73,7 @@ std::string age_of(const fs::path& path, const std::string& code) {
   return entries.empty() ? "" : entries.front().answer;
 }
 
-/// Commits a withdrawal like withdraw(), but does none of the clean-up that follows.
+/// Commits a withdrawal as withdraw() does, but stops before the clean-up of other files.
 void withdraw_and_stop(const fs::path& path, const std::string& code) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   const std::string person = database->text("SELECT person FROM session WHERE participant = '" + code + "'");
@@ -170,7 +170,8 @@ TEST(CleanUp, WhatCannotBeDoneStaysAndIsNamedUntilItCan) {
   EXPECT_THAT(select(path, "SELECT * FROM chore"), IsEmpty());
 }
 
-// A new P02 comes after the old one's personal data are deleted, while a backup still waits for its clean-up.
+// A new P02 is added after the withdrawn P02's personal data were deleted, while the clean-up of a backup has
+// still to be repeated.
 TEST(CleanUp, AFailedChoreTakesNothingFromALaterPersonOfTheSameCode) {
   const test::TemporaryFolder folder;
   const fs::path north = folder / "north.db";

@@ -133,7 +133,8 @@ TEST_F(Counting, TheCertificateIsOfJudgedShowingsAlone) {
   EXPECT_EQ(trials, 7);
 }
 
-// A pilot of 40 people holds millions of frames, so a showing's means must read only its own.
+// A pilot of 40 people has about 280,000 frames, so the means of a showing must be computed from a search for
+// its own frames, not from a scan of the table.
 TEST_F(Counting, AShowingsMeansAreReadFromItsOwnFramesAlone) {
   sqlite::Connection database(path_, Open::Read);
   sqlite::Statement plan(database,

@@ -1,5 +1,5 @@
-/// What vip-faults tests commands with: the two models of a power cut, the model of permission decisions, and
-/// reads that fail.
+/// The models by which vip-faults judges commands: two models of a power cut, and one of permission
+/// decisions. Also failing reads.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -77,7 +77,8 @@ TEST_P(CrashStates, ARenamedFileThatWasNotSyncedMayBeEmpty) {
 INSTANTIATE_TEST_SUITE_P(, CrashStates, ::testing::Values(Model::Ext4, Model::Posix),
                          [](const auto& one) { return std::string(name_of(one.param)); });
 
-// On ext4 a sync of any file makes earlier changes of names durable; elsewhere a deleted export comes back.
+// On ext4 a sync of any file makes earlier changes of names durable. On other file systems a power cut may
+// bring a deleted export back.
 TEST(CrashStatesOfNames, ASyncOfAnotherFileHelpsOnExt4Alone) {
   const std::vector<Call> calls{unlinked("/f/old", old_file), created("/f/new", new_file), synced(new_file)};
   EXPECT_FALSE(least(calls, Model::Ext4).names.contains("/f/old"));
@@ -104,7 +105,7 @@ TEST(DecisionsOfStations, ARefusalHoldsUntilAConsentThatKnewOfIt) {
   decisions.decide(north, "P01", What::Gaze, true);
   south = north;
   decisions.decide(north, "P01", What::Gaze, false);
-  decisions.decide(south, "P01", What::Gaze, true);  // without knowing of the refusal
+  decisions.decide(south, "P01", What::Gaze, true);  // south does not know of the refusal in north
   south.insert(north.begin(), north.end());
   EXPECT_FALSE(decisions.allows(south, "P01", What::Gaze));
   decisions.decide(south, "P01", What::Gaze, true);

@@ -29,7 +29,7 @@ void attack_many(std::uint64_t first_seed, int count) {
     const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    // Commands often accept a database after one statement, but seldom after many.
+    // Commands often accept a database that one statement has changed, but seldom one that many have changed.
     std::vector<std::uint8_t> bytes(4 + random() % 60);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const test::ProcessorTime limit(most_seconds);
@@ -40,8 +40,8 @@ void attack_many(std::uint64_t first_seed, int count) {
   EXPECT_GE(made.size(), 5u) << "the grammar chooses among few statements";
 }
 
-/// Changes each text of a table if its constraints and triggers allow it: rows of the event log cannot
-/// change.
+/// Sets each text of a table to bytes that are not UTF-8, where constraints and triggers allow it. Triggers
+/// protect the event log.
 void set_texts(const fs::path& path, const std::string& table) {
   sqlite::Connection database(path, sqlite::Open::Write);
   database.execute("PRAGMA foreign_keys = OFF");

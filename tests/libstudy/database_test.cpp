@@ -121,7 +121,7 @@ TEST(Database, CutOffInItsFirstTransactionIsMadeAnew) {
               ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
   Store(run, Open::Create).add_run(test::run_plan(test::pilot(), {"P02"}));
   EXPECT_EQ(merge({path, run}, into).sessions, 2);
-  // Beside a complete database this journal belongs to another file, so the database is not taken for empty.
+  // Beside a complete database such a journal does not make it count as empty.
   fs::copy_file(path, folder / "whole.db");
   put_unmade(folder / "other.db");
   fs::rename(folder / "other.db-journal", folder / "whole.db-journal");
@@ -293,8 +293,8 @@ TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {
   EXPECT_EQ(uids[0], uids[1]);
 }
 
-/// Values that schema 3 invented for each frame must not appear as measured, however its rows come into
-/// schema 4.
+/// Schema 3 stored values of each frame that were never measured. They must be empty after reading, an
+/// upgrade and a salvage.
 TEST(Database, FramesOfEarlierSchemasTellWhatWasMeasuredAlone) {
   const test::TemporaryFolder folder;
   const auto expect_frames = [](const fs::path& path, std::int64_t frames) {

@@ -42,10 +42,10 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   store.answer(session.id, pair, attempt, kept, true, 1);
   const KeptAnswer words{"remarks", {test::words(secret), 1}};
   store.answer(session.id, session.units.back(), 0, {&words, 1}, true, 1);
-  // An earlier version accepted such codes.
+  // An earlier version accepted codes that differ only in punctuation, here P-01 and P_01.
   sqlite::Connection(path, sqlite::Open::Write)
       .execute("UPDATE session SET participant = 'P_01' WHERE participant = 'Q_01'; DELETE FROM label");
-  fs::remove(path.string() + ".answers.jsonl");  // it holds the earlier codes and labels
+  fs::remove(path.string() + ".answers.jsonl");  // the journal has the earlier codes and labels
   return path;
 }
 
@@ -100,7 +100,7 @@ TEST(ExportBids, FilesAndTheirNamesAreThoseOfTheStandard) {
   EXPECT_EQ(description["GeneratedBy"][0]["Name"], "vip-study");
 }
 
-// Data of simulated participants must not pass for data of people.
+// Readers must not take data of simulated participants for data of people.
 TEST(ExportBids, SimulatedParticipantsAreNamedSuch) {
   const test::TemporaryFolder folder;
   const fs::path study = make_study(folder);
@@ -177,7 +177,7 @@ TEST(ExportBids, EventsTellWhatWasShownAndAnswered) {
   EXPECT_EQ(rows[1][0], "0");
   EXPECT_EQ(rows[1][1], "0.2");
   EXPECT_EQ(rows[1][2], "practice");
-  EXPECT_EQ(std::stod(rows[2][0]), 0.2);  // the fixture's clock does not move between the two
+  EXPECT_EQ(std::stod(rows[2][0]), 0.2);  // the second stimulus begins when the first one ends
   std::map<std::string, std::string> first, second;
   for (std::size_t i = 0; i < rows[0].size(); ++i) {
     first[rows[0][i]] = rows[1][i];

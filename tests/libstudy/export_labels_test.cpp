@@ -33,7 +33,7 @@ class GivenLabels : public ::testing::Test {
                  "' WHERE participant = 'OLD'; DELETE FROM label WHERE label = 'OLD'");
     fs::remove(database.string() + ".answers.jsonl");
   }
-  /// "code label" of all people.
+  /// Lines "code label" of all people.
   static std::vector<std::string> people(const fs::path& database) {
     Connection look(database, Open::Read);
     std::vector<std::string> lines;
@@ -67,7 +67,7 @@ TEST_F(GivenLabels, OfOlderDatabasesAreThoseThatWerePublishedLast) {
   add_old(path, "P-01");
   add_old(path, "p01");
   Connection(path, Open::Write).execute("DELETE FROM label");
-  // File names on some systems ignore case.
+  // Labels must differ in more than case, because some file systems ignore case.
   EXPECT_EQ(published(path),
             "participant_id\tcode\tsimulated\nsub-P01\tP-01\t1\nsub-P01x2\tP01\t1\nsub-p01x3\tp01\t1\n");
 }
@@ -79,8 +79,8 @@ TEST_F(GivenLabels, AreNotGivenAgainAfterAWithdrawal) {
   EXPECT_EQ(published(path), "participant_id\tcode\tsimulated\nsub-P01x2\tP-01\t1\n");
 }
 
-// The other P01 was planned first: it gets the plain label in a new database, but not when it is merged into
-// this one.
+// The P01 of south.db was planned first, so it gets the label P01 in a new database. Merged into study.db,
+// whose own P01 has that label already, it gets P01x2.
 TEST_F(GivenLabels, OfTheDatabaseThatTakesOthersInStay) {
   const fs::path south = folder / "south.db";
   add(south, {"P01", "P03"});
@@ -120,7 +120,7 @@ TEST_F(GivenLabels, OfProtocolsOfOneNameStay) {
   Protocol other = test::pairs();
   other.sha256 = std::string(64, 'a');
   other.version = "2.0";
-  Store(path, Open::Write).add_run(test::run_plan(other, {"A01"}));  // comes first in the order of codes
+  Store(path, Open::Write).add_run(test::run_plan(other, {"A01"}));  // A01 sorts before P05
   published(path);
   EXPECT_TRUE(fs::exists(folder / "bids" / "sub-P05" / "ses-pairsv1"));
   EXPECT_TRUE(fs::exists(folder / "bids" / "sub-A01" / "ses-pairsaaaaaav1"));

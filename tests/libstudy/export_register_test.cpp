@@ -87,7 +87,7 @@ TEST_F(Exports, OfOnePathAreOne) {
   EXPECT_EQ(count("export"), 2);
 }
 
-// A killed export leaves its draft and a row that was written before, but no target.
+// An export that is killed leaves its draft and a row in the register, but nothing at its target.
 TEST_F(Exports, DraftsOfAKilledExportGoToo) {
   const auto people = everybody(*open_database(path, Open::Read, read_schema_steps()));
   fs::path draft, page;
@@ -162,8 +162,8 @@ TEST_F(Exports, ThatWereMovedAreNamedOnce) {
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
 }
 
-// The deletion of an export is interrupted after it was marked, after its rename to the draft, and while its
-// files are removed.
+// The deletion of an export is interrupted after its row was marked, after its folder was renamed to the
+// draft, and after one of its files was deleted.
 TEST_F(Exports, ADeletionThatWasCutIsFinished) {
   for (const int step : {0, 1, 2}) {
     const std::string code = "Q" + std::to_string(step);
@@ -206,14 +206,14 @@ TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   export_csv(path, csv);
   merge({path}, folder / "all.db");
   EXPECT_THAT(withdraw(folder / "all.db", "P01").beside.cleaned, ElementsAre(csv));
-  // On another station: merging a tombstone deletes the station's export.
+  // On the other station: a merge with a withdrawal deletes the station's own export.
   add("P02");
   export_csv(path, csv);
   EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
 }
 
-// Registering takes no writer lock, so it can happen at any moment of a merge: here before every 20th of its
-// reads. Before more of them SQLite may give up reading a database that changes all the time.
+// Registering an export takes no writer lock, so it can happen at any moment of a merge. Here it happens
+// before every 20th read of the merge; if it happened more often, SQLite could give up reading.
 TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
   Store(folder / "south.db", Open::Create).add_run(test::run_plan(test::pairs(), {"P02"}));
   const pid_t merging = ::fork();
@@ -242,7 +242,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     ::kill(merging, SIGCONT);
   }
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_GT(refused, 0);  // refused while the merge commits
+  EXPECT_GT(refused, 0);  // while the merge commits
   ASSERT_GT(entered.size(), 10u);
   for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;
 }

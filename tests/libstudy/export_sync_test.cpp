@@ -35,7 +35,7 @@ TEST(ExportSync, NoCommitComesBeforeWhatItSaysIsOnTheDisk) {
   const Withdrawal done = withdraw(path, "P01");
   faults::arm_calls({});
   EXPECT_EQ(done.beside.cleaned.size(), 2u);
-  std::set<fs::path> changed, unsynced;  // names that were moved or removed; their folders
+  std::set<fs::path> changed, unsynced;  // names moved or removed; their folders while unsynced
   int commits = 0;
   for (const Call& call : log.read()) {
     using enum Call::Kind;

@@ -182,7 +182,7 @@ TEST(ExportCsv, ForSpreadsheetsHasTheLocalesMarks) {
                 "';' between fields, ',' as the decimal mark. R reads it by read.csv2("));
   EXPECT_EQ(csv_field("a;b", {';', ',', true}), "\"a;b\"");
   EXPECT_EQ(csv_field("a,b", {';', ',', true}), "a,b");
-  export_csv(database, folder / "out");  // recognised as an earlier export too
+  export_csv(database, folder / "out");  // the earlier export with other marks is recognised and replaced
   EXPECT_THAT(test::bytes_of(folder / "out" / "dictionary.csv"), ::testing::StartsWith("file,column,"));
 }
 

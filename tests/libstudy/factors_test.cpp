@@ -230,7 +230,8 @@ std::string small_text(const std::string& hitch, const std::string& content) {
   return changed(text, "name = \"content\"", "name = \"" + content + "\"");
 }
 
-/// Two participants of the first between-subject group in `path`, who answer every trial.
+/// Plays the sessions of two participants, who answer every trial, into a database. Both are in the
+/// between-subject group of slot 0.
 fs::path played(const fs::path& path, const std::string& text, const std::string& station = "north") {
   const Protocol protocol = read(text);
   Store store(path, sqlite::Open::Create);
@@ -258,7 +259,7 @@ TEST(FactorData, TheCertificateHasARowForEachCellWithWhatWasAskedAndShown) {
   const auto rows = read_certificate(path, 1, FpsMean::Harmonic);
   ASSERT_EQ(rows.size(), 6u);
   const CertificateRow& row = rows[2];
-  const std::string content = row.levels.at(1).second;  // level of the group to which slot 0 was assigned
+  const std::string content = row.levels.at(1).second;  // the content of the group of slot 0
   EXPECT_THAT(row.levels, ElementsAre(testing::Pair("hitch", "h50"),
                                       testing::Pair("content", testing::AnyOf("dam", "drop"))));
   EXPECT_EQ(row.timing, "60 frames/s, a hitch of 50 ms every 2 s, jitter 0.5");
@@ -284,7 +285,8 @@ TEST(FactorData, TheCertificateHasARowForEachCellWithWhatWasAskedAndShown) {
 
 TEST(FactorData, ExportsHaveAColumnForEachFactorAndTheMomentsOfProfiles) {
   const study::test::TemporaryFolder folder;
-  // Names of factors that could break an export: "frames" is also a column, "select" is a word of SQL.
+  // Names of factors that could break an export: "frames" is also the name of a column, and "select" is a
+  // keyword of SQL.
   const fs::path path = played(folder / "study.db", small_text("frames", "select"));
   export_csv(path, folder / "csv");
   const auto rows = ::test::read_csv(folder / "csv/ratings.csv");

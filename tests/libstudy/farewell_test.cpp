@@ -28,7 +28,7 @@ kind = "ssq"
 id = "afterwards"
 )";
 
-/// The part of `seen` from the last line that begins with `begin`.
+/// The lines of `seen` from the last one that starts with `begin`; none if no line does.
 std::vector<std::string> from(const std::vector<std::string>& seen, const std::string& begin) {
   const auto at = std::find_if(seen.rbegin(), seen.rend(),
                                [&](const std::string& line) { return line.starts_with(begin); });

@@ -23,7 +23,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Copies like `cp`: the same file gets other bytes.
+/// Copies as `cp` does: the target remains the same file and gets new bytes.
 void copy_over(const fs::path& from, const fs::path& to) {
   const std::string bytes = test::bytes_of(from);
   std::FILE* file = std::fopen(to.c_str(), "wb");
@@ -31,7 +31,7 @@ void copy_over(const fs::path& from, const fs::path& to) {
   std::fclose(file);
 }
 
-/// Two studies; a session of one is open.
+/// Two studies. A session of the first one is open.
 class Replaced : public ::testing::Test {
  protected:
   Replaced() {
@@ -52,7 +52,7 @@ class Replaced : public ::testing::Test {
     return {};
   }
 
-  /// The next write and all later ones throw `problem`; then the session ends.
+  /// Expects that each write throws `problem`, and that no log and no shared memory remain after the session.
   void expect_stop(const std::string& problem) {
     EXPECT_THAT([&] { write("after"); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr(path_.string()), HasSubstr(problem))));
@@ -62,8 +62,8 @@ class Replaced : public ::testing::Test {
     EXPECT_FALSE(fs::exists(path_.string() + "-shm"));
   }
 
-  /// A file beside the path has everything up to the write that noticed the problem, readable by its owner
-  /// only.
+  /// Expects a file beside the database that only its owner may read. It has all notes, with the one whose
+  /// write met the problem.
   void expect_rescued() {
     const fs::path saved = rescued(".db");
     ASSERT_FALSE(saved.empty());
@@ -94,7 +94,7 @@ TEST_F(Replaced, AnotherDatabaseMovedThereStaysAsItIs) {
   fs::rename(other_, path_);
   expect_stop("was replaced by another file");
   EXPECT_TRUE(test::bytes_of(path_) == before);
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal belongs to the first study
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // the journal belongs to the first study
   fs::remove(path_);
   expect_rescued();
 }
@@ -109,8 +109,8 @@ TEST_F(Replaced, AnotherDatabaseCopiedOverItStaysAsItIs) {
   copy_over(other_, path_);
   expect_stop("was written over by another program");
   EXPECT_TRUE(test::bytes_of(path_) == test::bytes_of(other_));
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal belongs to the first study
-  // If SQLite's own pages do not make a complete database, the log is saved, and the journal has the answers.
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // the journal belongs to the first study
+  // If SQLite's cached pages make a complete database, it is saved; otherwise the log is saved.
   EXPECT_FALSE(rescued(".db").empty() && rescued(".wal").empty());
 }
 
@@ -149,7 +149,7 @@ TEST_F(Replaced, ItsOwnLogMayBeCopiedBackAsOftenAsItLikes) {
   EXPECT_EQ(Connection(path_, Open::Read).integer("SELECT count(*) FROM frame"), 180000);
 }
 
-/// SQLite never releases the shared memory of a connection that keeps no log.
+/// Without a log, the watch must not open the shared memory, because SQLite would never close it.
 TEST(FileWatch, OpensNoSharedMemoryWhereThereIsNoLog) {
   const test::TemporaryFolder folder;
   Connection database(folder / "s.db", Open::Create);

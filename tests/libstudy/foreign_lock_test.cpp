@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// A database browser with an open transaction.
+/// A process that keeps a write transaction open, as a database browser may do.
 class Browser {
  public:
   explicit Browser(const fs::path& path) {

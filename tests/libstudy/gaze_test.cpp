@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// Delivers two samples at each request: one good, one of a blink.
+/// Delivers two samples at each read: a valid one and one of a blink.
 class TwoEach final : public GazeSource {
  public:
   explicit TwoEach(const Clock& clock) : clock_(clock) {}

@@ -50,8 +50,8 @@ TEST(GazeQuality, OfTooFewSamplesIsNotKnown) {
   EXPECT_FALSE(gaze_quality({&one, 1}).rms_s2s_deg);
 }
 
-/// A person whose measured gaze lies `off` degrees to the right of each target; `off` depends on the number
-/// of the grid.
+/// A person whose gaze is measured `off` degrees to the right of each target. `off` depends on the number of
+/// the validation, from 1. From 90 on the samples are invalid.
 class OffTargets final : public GazeTargets {
  public:
   explicit OffTargets(std::function<double(int)> off) : off_(std::move(off)) {}
@@ -72,7 +72,8 @@ class OffTargets final : public GazeTargets {
   std::function<double(int)> off_;
 };
 
-/// A session with a validation of eight degrees between consent and trials.
+/// A session with a gaze validation between consent and trials. Its targets lie up to 8 degrees off the
+/// middle.
 struct Validated : test::OneSession {
   explicit Validated(std::function<double(int)> off, int gaze_kept = 1)
       : OneSession(validating()), targets(std::move(off)) {

@@ -38,7 +38,8 @@ inline GazeSample ray_sample(std::int64_t sampled_ns, double x = 0.6) {
   return {sampled_ns, sampled_ns, true, GazePoint{0.25, 0.5}, false, GazeRay{{0, 0, 0.01}, {x, 0, -0.8}}};
 }
 
-/// One slot every 10 ms of the clock; ipd_of gives the distance between the eyes at a time.
+/// Delivers a slot for each 10 ms of the clock. `ipd_of` maps a time in ns to the distance between the eyes
+/// in mm.
 class SlotEvery10ms final : public SlotSource {
  public:
   explicit SlotEvery10ms(const Clock& clock) : clock_(clock) {}

@@ -25,7 +25,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// An eye tracker that is read after each frame; `loses` returns true if it does not see the eyes.
+/// An eye tracker that delivers one sample at each read. `loses` returns true for the times at which it does
+/// not see the eyes.
 class Eyes final : public GazeSource {
  public:
   explicit Eyes(const Clock& clock) : clock_(clock) {}
@@ -102,7 +103,8 @@ TEST(HeadsetRecords, HoldTheDistanceOfTheEyesWhenItChanges) {
     const std::int64_t gone_ms = (now_ns - begun_ns) / 1'000'000;
     return gone_ms < 300 ? 63.0 : gone_ms < 400 ? 63.15 : 64.0;
   };
-  // Distances between the eyes are written with the frames, so nothing waits for the disk between two frames.
+  // Changes of the distance between the eyes are written in the background, with the frames, so that no frame
+  // waits for the disk.
   std::int64_t between_frames = 0;
   SessionHooks hooks;
   hooks.shown = [&](const FrameRecord&) {

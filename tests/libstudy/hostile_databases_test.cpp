@@ -43,7 +43,8 @@ class HostileDatabases : public ::testing::Test {
 
   void SetUp() override { begin(); }
 
-  /// Fills a folder with a study to be damaged, a sound one, another one and a file that is no study.
+  /// Refills the folder: a study to be damaged, a sound copy of it, an unrelated study, and a file that is no
+  /// study.
   void begin() {
     for (const auto& entry : fs::directory_iterator(folder / "box")) fs::remove_all(entry.path());
     for (const fs::path& to : {study, sound}) {
@@ -106,8 +107,7 @@ TEST_F(HostileDatabases, AreRefusedByEachCommandAndNothingIsTouched) {
   EXPECT_GE(kinds.size(), 8u);
 }
 
-/// The messages name salvage as the remedy: it recovers all answers, and needs the journal only if a table or
-/// its columns are gone.
+/// The messages name salvage as the remedy. It recovers all answers, from most files without their journal.
 TEST_F(HostileDatabases, SalvageMakesASoundStudyOfThem) {
   const auto truth = test::answers_of(sound);
   for (const test::HostileFile& file : test::hostile_files()) {
@@ -140,7 +140,7 @@ TEST_F(HostileDatabases, WhatTheMessageSaysToDropIsDropped) {
   EXPECT_NO_THROW(read_status(study));
 }
 
-/// Databases of earlier versions, whose schema comments differ, and backups of upgrades are accepted.
+/// Databases of earlier versions, whose schema comments differ, are accepted before and after their upgrade.
 TEST_F(HostileDatabases, WhatEarlierVersionsWroteIsNoneOfThem) {
   for (const auto& entry : fs::directory_iterator(fs::path(VIP_TEST_DIR) / "libstudy" / "fixtures")) {
     if (entry.path().extension() != ".db") continue;
@@ -152,7 +152,7 @@ TEST_F(HostileDatabases, WhatEarlierVersionsWroteIsNoneOfThem) {
   }
 }
 
-/// A study whose session was killed has a log, which readers must leave in place.
+/// The log of a killed session has its last commits, so readers must leave it in place.
 TEST_F(HostileDatabases, ReadersLeaveTheLogOfAKilledSessionAlone) {
   const fs::path killed = box("killed.db");
   {
@@ -192,7 +192,7 @@ TEST_F(HostileDatabases, ALogWithoutItsDatabaseIsKept) {
   }
 }
 
-/// Backups beside a study hold people too: a withdrawal names a foreign table in one.
+/// A backup beside a study has participants' data too, so a withdrawal names a foreign table in a backup.
 TEST_F(HostileDatabases, ABackupWithForeignPartsIsNamedByAWithdrawal) {
   fs::copy_file(sound, study.string() + ".v7-2026-01-01T00:00:00Z.bak");
   test::spoil_with(study.string() + ".v7-2026-01-01T00:00:00Z.bak",
@@ -200,7 +200,8 @@ TEST_F(HostileDatabases, ABackupWithForeignPartsIsNamedByAWithdrawal) {
   EXPECT_THAT(withdraw(study, "P01").beside.left, ::testing::Contains(HasSubstr("has a table 'kept'")));
 }
 
-/// Every cell of every leaf page points to the same chain of overflow pages.
+/// Every cell of every leaf page points to the same chain of overflow pages, so that the rows add up to far
+/// more bytes than the file has.
 TEST_F(HostileDatabases, RowsThatAllStandOnTheSamePagesEndASalvage) {
   constexpr std::size_t page_bytes = 4096, chain = 2000, leaves = 40, cells = 1400;
   const auto number = [](std::size_t value, int bytes) {

@@ -29,10 +29,10 @@ Spoil with_schema(const std::string& table, const std::string& what, const std::
               by + "') WHERE name = '" + table + "'; PRAGMA writable_schema = RESET");
 }
 
-/// SQL that writes the first page again.
+/// SQL that sets the version to what it is, which rewrites the first page.
 std::string same_version() { return "PRAGMA user_version = " + std::to_string(read_schema_steps().size()); }
 
-/// Puts the log of one commit to `source` beside `path`.
+/// Commits an event to `source`, and copies the log of `source` beside `path`.
 void lend_log(const fs::path& source, const fs::path& path) {
   const auto database = open_database(source, Open::Write, read_schema_steps());
   sqlite::Transaction transaction(*database);
@@ -41,7 +41,7 @@ void lend_log(const fs::path& source, const fs::path& path) {
   fs::copy_file(source.string() + "-wal", path.string() + "-wal", fs::copy_options::overwrite_existing);
 }
 
-/// Puts the log of an earlier state of the same database beside it.
+/// Puts a log from before later commits beside the database.
 void put_earlier_log(const fs::path& path, const fs::path&) {
   const fs::path log = path.string() + "-wal", kept = path.string() + ".kept";
   lend_log(path, kept);
@@ -49,7 +49,7 @@ void put_earlier_log(const fs::path& path, const fs::path&) {
   fs::rename(kept.string() + "-wal", log);
 }
 
-/// Puts the journal of an open transaction in `other` beside `path`.
+/// Puts the rollback journal of an open transaction in `other` beside `path`.
 void put_foreign_journal(const fs::path& path, const fs::path& other) {
   Connection database(other, Open::Write);
   database.text("PRAGMA journal_mode = DELETE");
@@ -67,7 +67,8 @@ std::string big_endian(std::uint32_t value) {
 
 constexpr const char* journal_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
 
-/// Puts a journal that names a file, which SQLite would read and delete.
+/// Puts a rollback journal beside `path` that names `other` as its super-journal. SQLite would read that file
+/// and delete it.
 void put_naming_journal(const fs::path& path, const fs::path& other) {
   const std::string victim = fs::absolute(other).string();
   std::uint32_t sum = 0;
@@ -80,7 +81,7 @@ void put_naming_journal(const fs::path& path, const fs::path& other) {
   base::write_file_atomically(path.string() + "-journal", bytes);
 }
 
-/// Puts a journal that says the file was empty before.
+/// Puts a rollback journal beside `path` that says that the database was empty before.
 void put_emptying_journal(const fs::path& path, const fs::path&) {
   std::string bytes =
       journal_magic + big_endian(0) + big_endian(1) + big_endian(0) + big_endian(512) + big_endian(4096);

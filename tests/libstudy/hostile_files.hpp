@@ -15,7 +15,7 @@ struct HostileFile {
   /// Spoils the valid study at the path; `other` is an unrelated study.
   std::function<void(const std::filesystem::path& path, const std::filesystem::path& other)> spoil;
   const char* reason;    ///< part of the error message that rejects it
-  bool salvaged = true;  ///< salvage recovers all answers
+  bool salvaged = true;  ///< salvage recovers all answers without the journal
 };
 
 const std::vector<HostileFile>& hostile_files();
@@ -26,7 +26,7 @@ void spoil_with(const std::filesystem::path& path, const std::string& sql);
 /// Bytes of all files in a folder, by path.
 std::map<std::string, std::string> everything_in(const std::filesystem::path& folder);
 
-/// Ends the process, and so the test, if the scope takes more than this many seconds of processor time.
+/// Kills the process, and so the test, if the scope takes more than this number of seconds of processor time.
 class ProcessorTime {
  public:
   explicit ProcessorTime(int seconds);

@@ -1,5 +1,5 @@
-/// Any value of any key of a protocol: either it is accepted and the plan and its frames can be made, or an
-/// error gives its place and the remedy.
+/// Any value of any key of a protocol is either accepted, and then the plan and its frames can be made, or
+/// refused by an error with its place and a remedy.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ std::vector<test::SoundText> sound_protocols() {
   return out;
 }
 
-/// The steps that follow an accepted protocol.
+/// What a program does with a protocol that was accepted.
 void use(const study::Protocol& protocol) {
   study::next_slot(protocol, {});
   study::make_plan(protocol, "P01", 7, 0);
@@ -77,8 +77,8 @@ TEST(HostileValues, OfAnyKeyOfAProtocolAreTakenOrRefusedWithPlaceAndMend) {
   const auto names = test::try_hostile_values(
       sound_protocols(),
       [](const std::string& text) { return study::parse_protocol(text, test::hostile_name); }, use);
-  // Every key of the reference must occur; tables and lists of tables occur through their keys. SCORE, KEY
-  // and FACTOR are placeholders for any name.
+  // Every key of the reference must occur. Tables and lists of tables are left out, because their keys are
+  // checked. SCORE, KEY and FACTOR are placeholders for any name.
   EXPECT_TRUE(names.contains("rate_per_s"));
   for (const auto& key : study::protocol_reference()) {
     const bool any_name = key.key == "SCORE" || key.key == "KEY" || key.key == "FACTOR";

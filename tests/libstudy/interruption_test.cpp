@@ -25,11 +25,11 @@ SessionHooks stop_in_showing(int showing) {
   return hooks;
 }
 
-/// A session of paced_pairs(), which has one practice trial and three that count, each with two stimuli. It
-/// is cut in the fifth showing, so in the third trial.
+/// A session of paced_pairs(): one practice trial and three that count, each with two stimuli. It is cut in
+/// the fifth showing, which is in the third trial.
 class InterruptionPolicy : public ::testing::Test {
  protected:
-  /// Cuts the session, settles the interruption like resume, then plays to the end.
+  /// Cuts the session, applies on_interruption as vip-study resume does, and plays the session to its end.
   void cut_and_resume(const std::string& policy) {
     one = std::make_unique<OneSession>(paced_pairs(policy));
     EXPECT_THROW(one->run(stop_in_showing(5)), Stopped);
@@ -59,7 +59,7 @@ TEST_F(InterruptionPolicy, RestartBlockShowsItsTrialsFromTheFirst) {
   cut_and_resume("restart_block");
   EXPECT_TRUE(changed);
   EXPECT_EQ(times_asked("preference"), 3) << "practice is another block";
-  // The answer from before the cut stays, but is set aside.
+  // The answer from before the interruption stays in the database, but is set aside.
   EXPECT_EQ(one->count("response JOIN question USING (question_id) WHERE code = 'ease'"), 5);
   EXPECT_EQ(one->count("note WHERE words LIKE 'block restarted%'"), 1);
   EXPECT_EQ(

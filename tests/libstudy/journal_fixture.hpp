@@ -1,5 +1,6 @@
 #pragma once
-/// A small study with every kind of row that matters to the journal, and readers to compare both.
+/// A small study with every kind of row that the journal has, and readers that compare the journal with the
+/// database.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +55,7 @@ inline void write_small_study(const std::filesystem::path& path) {
   }
 }
 
-/// All lines that the journal should have for the database.
+/// The lines that the journal should have for the database, sorted.
 inline std::vector<std::string> lines_of(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
@@ -64,7 +65,7 @@ inline std::vector<std::string> lines_of(const std::filesystem::path& path) {
   return lines;
 }
 
-/// The lines of the journal beside the database that were committed.
+/// The committed lines of the journal beside the database, sorted.
 inline std::vector<std::string> kept_lines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   for (const auto& [key, row] : read_journal(journal_beside(path)).kept) lines.push_back(row.line);
@@ -77,7 +78,7 @@ inline void expect_journal_equals(const std::filesystem::path& path) {
   EXPECT_TRUE(read_journal(journal_beside(path)).pending.empty());
 }
 
-/// Every answer as text: participant, position, question, value, response time, time of day.
+/// Every answer as text: participant, position, attempt, question, value, response time, UTC.
 inline std::vector<std::string> answers_of(const std::filesystem::path& path) {
   std::vector<std::string> all;
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());

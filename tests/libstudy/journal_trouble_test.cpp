@@ -1,5 +1,5 @@
-/// The journal of answers if its disk is full, if it is lost during a session, and after a kill between its
-/// line and the commit.
+/// The journal of answers on a full disk, after its loss during a session, and after a kill between the write
+/// of a line and the commit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -46,7 +46,7 @@ class FullDisk {
   void (*handler_)(int) = nullptr;
 };
 
-/// A database with its journal, and notes that are committed to both step by step.
+/// A database with its journal, and a function that commits a note to them step by step.
 struct Journalled {
   Journalled() {
     test::write_small_study(path);
@@ -54,7 +54,7 @@ struct Journalled {
     journal = std::make_unique<AnswerJournal>(*database);
     journal->tell_with([this](const std::string& line) { told.push_back(line); });
   }
-  /// full: no file can grow after the note's commit.
+  /// full: no file can grow once the database has committed the note.
   void note(const std::string& words, bool full = false) {
     Transaction transaction(*database);
     database->execute("INSERT INTO note (session_id, utc, words) VALUES (1, 'now', '" + words + "')");
@@ -117,7 +117,7 @@ TEST(JournalTrouble, ALostJournalIsNoticedAtTheNextCommitAndWrittenAnew) {
     one.note("later");
     EXPECT_EQ(one.notes_kept(), 3) << how;
     test::expect_journal_equals(one.path);
-    // A file that another program put in the journal's place is kept under another name.
+    // A journal that was replaced or changed is kept under another name.
     std::vector<std::string> aside;
     for (const auto& entry : fs::directory_iterator(one.folder.path())) {
       if (entry.path().string().find(".replaced-") != std::string::npos)
@@ -144,7 +144,7 @@ TEST(JournalTrouble, ASessionGoesOnWithoutLossWhenItsJournalIsDeleted) {
   one.store.require_journal();
 }
 
-/// Writes the end of a showing and is killed after its line is in the journal.
+/// Writes the end of a showing, and is killed after its line is in the journal and before the commit.
 void end_showing_by_hand(const fs::path& path, std::int64_t frames) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   AnswerJournal journal(*database);
@@ -193,9 +193,9 @@ TEST(JournalTrouble, AShowingWhoseFramesWentWithAKilledProgramIsCutAndShownAgain
   EXPECT_TRUE(again.begun) << "the trial is shown again";
 }
 
-// If the disk fills in the first commit of a new database, only the journal has the plan. The next run takes
-// it over and is then refused because the plan exists: the plan must not be deleted with that run's new
-// file.
+// A disk that fills during the first commit of a new database leaves the plan in the journal alone. The next
+// run recovers the plan into a new file, and is refused because the plan exists. The refused run must not
+// delete that file.
 TEST(JournalTrouble, APlanThatStandsInTheJournalAloneOutlivesARefusedRun) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "s.db";

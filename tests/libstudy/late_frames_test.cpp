@@ -13,7 +13,7 @@ namespace {
 using sqlite::Open;
 using ::testing::ElementsAre;
 
-/// Presents chosen frames late: presenting frame i takes delay_ns(i) on the virtual clock.
+/// Presenting frame i takes delay_ns(i) on the virtual clock, so that chosen frames are late.
 class LateDisplay final : public Display {
  public:
   LateDisplay(VirtualClock& clock, std::function<std::int64_t(std::int64_t)> delay_ns)
@@ -49,7 +49,8 @@ const Delay frame_100_is_2_ms_late = [](std::int64_t frame) { return frame == 10
 const Delay each_takes_25_ms = [](std::int64_t) { return 25'000'000; };
 const Delay each_takes_250_ms = [](std::int64_t) { return 250'000'000; };
 
-/// Runs one trial a participant, each with its own display; returns the certificate's only row.
+/// Runs one trial for each participant, each with a display of their own. Returns the only row of the
+/// certificate.
 CertificateRow certificate_of(const std::filesystem::path& path, const std::vector<Delay>& delays) {
   const Protocol protocol = one_constant_setting();
   Store store(path, Open::Create);
@@ -108,7 +109,7 @@ TEST(LateFrames, SustainedLoadFailsTheTrial) {
   const test::TemporaryFolder folder;
   const CertificateRow row = certificate_of(folder / "study.db", {each_takes_25_ms});
   EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
-  // Every interval is 25 ms but the last, which lasts as planned; frame i is late by 25 (i + 1) - 20 i ms.
+  // Every interval is 25 ms but the last, which has its planned 20 ms. Frame i is 25 (i + 1) - 20 i ms late.
   EXPECT_EQ(row.late, 500);
   EXPECT_NEAR(row.worst_late_ms, 25 * 500 - 20 * 499, 1e-6);
   EXPECT_NEAR(row.mean, 500 / (499 * 0.025 + 0.020), 1e-9);
@@ -121,8 +122,8 @@ TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
   const test::TemporaryFolder folder;
   const CertificateRow row = certificate_of(folder / "study.db", {each_takes_250_ms});
   EXPECT_THAT(std::make_tuple(row.pass, row.degraded, row.fail), testing::FieldsAre(0, 0, 1));
-  // Frame i is ready 250 i ms after the start and shown 250 ms later. Frames that are ready by 20 s, when the
-  // trial is cut, are shown.
+  // Frame i is ready 250 i ms after the start and shown 250 ms later. The trial is cut at 20 s, so the last
+  // frame is the one that is ready at 20 s.
   EXPECT_EQ(row.frames, 81);
   const auto trials = test::trials_of(folder / "study.db");
   ASSERT_EQ(trials.size(), 1u);
@@ -135,7 +136,7 @@ TEST(LateFrames, ATrialThatGoesOnForTooLongIsCutAndItsQuestionAsked) {
 TEST(LateFrames, APairOfWhichOneIsCutIsShownWholeAndJudged) {
   test::OneSession one(test::paced_pairs());
   VirtualClock clock;
-  // The first showing of 1 s is cut 5 s past its end, before its eighth frame.
+  // Frame i is ready after i s. A showing of 1 s is cut 5 s past its end, so frame 7 is not shown.
   LateDisplay display(clock, [](std::int64_t frame) { return frame < 7 ? 1'000'000'000 : 0; });
   test::NullStimuli stimuli(one.protocol.content.content_step_s);
   const auto runs = one.open();

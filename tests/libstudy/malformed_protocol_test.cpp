@@ -337,16 +337,15 @@ const Malformed obeyed[] = {
      "is in a block of kind stimulus", "in a block of kind consent"}};
 INSTANTIATE_TEST_SUITE_P(Obeyed, MalformedProtocol, testing::ValuesIn(obeyed));
 
-/// Earlier versions accepted such questions in other forms. A database may hold such a protocol: resuming and
-/// reading it must still work.
+/// Earlier versions accepted these questions in other forms. A database may hold a protocol with such a
+/// question, and resuming and reading it must still work.
 TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
   const std::string text = replaced(shipped_text(task1), gaze_box,
                                     "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]");
   EXPECT_EQ(study::parse_protocol(text, "p.toml", study::ProtocolUse::Stored).blocks.size(), 4u);
 }
 
-// Names that must be known to the program: without these checks a wrong name would be noticed only after the
-// study.
+// Names that the program must know: without these checks a wrong name would be noticed only after the study.
 const Malformed names[] = {
     {task1, "\"Ours\", \"Ours-TSp\"", "\"ours\", \"Ours-TSp\"", "|\"ours\"", "is no method",
      "the nearest is \"Ours\""},

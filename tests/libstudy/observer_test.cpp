@@ -41,14 +41,16 @@ double mean_score(const std::string& specification, double mean, double sd, int 
 }
 
 TEST(PtpeObserver, ScoresFourOnTheContourOnAverage) {
-  // SE of the mean is about sqrt(1 + 0.25 + 1/12) / sqrt(20000) = 0.008.
+  // The standard error of the mean is about sqrt(noise^2 + participant_sd^2 + 1/12) / sqrt(people), here
+  // sqrt(1 + 0.25 + 1/12) / sqrt(20000) = 0.008; 1/12 is the variance of rounding.
   for (const double sd : {0.0, 5.0, 10.0}) {
     EXPECT_NEAR(mean_score("ptpe:a=31,b=0.035", 31 * std::exp(0.035 * sd), sd, 20000), 4, 0.04) << sd;
   }
 }
 
 TEST(PtpeObserver, ExpectationFollowsTheClosedForm) {
-  // P(score > k) = Phi((4 + slope tau - k - 1/2) / s), s^2 = noise^2 + participant_sd^2.
+  // P(score > k) = Phi((4 + slope tau - k - 1/2) / s), with slope = 0.14 and s^2 = noise^2 +
+  // participant_sd^2.
   const double tau = 20 - 31, s = std::sqrt(1.25);
   double expected = 1;
   for (int k = 1; k < 7; ++k) expected += 0.5 * std::erfc(-(4 + 0.14 * tau - k - 0.5) / s / std::sqrt(2));
@@ -147,7 +149,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ptpe:a=31,b=0,noise=-1", "character 21: noise = -1 is out of range"},
         Bad{"ptpe:a=31,b=0,", "character 15: expected key=number"}));
 
-/// Features by method: coarse, steady LoRes; fine HiRes; everything else between.
+/// Features by method: LoRes has coarse pictures (16 px), HiRes fine ones (8 px), and every other method 11
+/// px. Flicker is equal.
 class TwoFeatures final : public FeatureSource {
  public:
   PictureFeatures of(const StimulusSpec& stimulus) override {
@@ -295,7 +298,7 @@ TEST(RandomObserver, GivesEveryScoreEquallyOften) {
   std::vector<int> count(8);
   for (int person = 0; person < 7000; ++person)
     ++count.at(static_cast<std::size_t>(score(*observer, shown(30, 5, person, 2))));
-  // SD of a count is 29.
+  // The standard deviation of a count is sqrt(7000 (1/7) (6/7)) = 29.
   for (int k = 1; k <= 7; ++k) EXPECT_NEAR(count[static_cast<std::size_t>(k)], 1000, 120) << k;
 }
 
@@ -324,7 +327,8 @@ TEST(DropoutObserver, LeavesWithItsProbabilityBeforeEachTrial) {
 TEST(FramesObserver, PrefersFinePicturesAndSteadyTiming) {
   const auto observer = observer_of("frames:grain=1.2");
   const ShownStimulus coarse = stimulus("LoRes", 30, 5), fine = stimulus("HiRes", 30, 5);
-  // q_2 - q_1 = 1.2 octaves: Phi(1.2 / 0.9) = 0.909.
+  // The pictures' granularities differ by an octave, so the qualities by grain = 1.2. With noise 0.9 the
+  // share is Phi(1.2 / 0.9) = 0.909.
   EXPECT_NEAR(second_preferred(*observer, coarse, fine), 0.909, 0.02);
   EXPECT_NEAR(second_preferred(*observer, fine, coarse), 0.091, 0.02);
   EXPECT_NEAR(second_preferred(*observer, fine, fine), 0.5, 0.032);
@@ -333,7 +337,7 @@ TEST(FramesObserver, PrefersFinePicturesAndSteadyTiming) {
 
 TEST(FramesObserver, TheIntervalBiasShiftsChoicesOfEqualStimuli) {
   const ShownStimulus same = stimulus("Ours", 30, 5);
-  // Phi(0.5 / 0.9) = 0.711.
+  // With bias 0.5 and noise 0.9 the share is Phi(0.5 / 0.9) = 0.711.
   EXPECT_NEAR(second_preferred(*observer_of("frames:bias=0.5"), same, same), 0.711, 0.03);
   EXPECT_NEAR(second_preferred(*observer_of("frames:bias=-0.5"), same, same), 0.289, 0.03);
 }

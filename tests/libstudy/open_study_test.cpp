@@ -94,11 +94,11 @@ TEST_F(OpeningToRead, WithoutItsLogIsRefusedByEveryReaderAndGoesOnOnlyWhenTold) 
   EXPECT_THAT(read_tasks({copy, true}).lacking, HasSubstr("1 answers and "));
   EXPECT_EQ(read_status({copy, true}).lacking, lacking_of(copy));
   EXPECT_EQ(merge({copy}, folder_ / "merged.db", true).sessions, 3);
-  // The export's own event must not take the number of an event that only the journal holds.
+  // The export's own event must not have the number of an event that only the journal has.
   const std::string lacking = lacking_of(copy);
   export_csv({copy, true}, folder_ / "csv");
   EXPECT_EQ(lacking_of(copy), lacking);
-  // The remedy that the message names.
+  // Salvage is the remedy that the message names.
   EXPECT_EQ(salvage(copy, folder_ / "whole.db").answers_journal, 1);
   EXPECT_EQ(lacking_of(folder_ / "whole.db"), "");
 }
@@ -132,7 +132,7 @@ TEST_F(OpeningToRead, OfABackupThatWasPutBackObeysARefusalMadeSince) {
   EXPECT_THAT(gaze_seen(), ElementsAre("P02"));
 }
 
-/// The command was killed between the journal's line and the commit.
+/// The command is killed between the write of the journal's line and the commit.
 TEST_F(OpeningToRead, SeesACommitThatWasCutShort) {
   const std::string before = test::bytes_of(path_), journal = test::bytes_of(journal_beside(path_));
   change_permissions(path_, "P01", {.gaze = false, .sharing = false});
@@ -144,7 +144,7 @@ TEST_F(OpeningToRead, SeesACommitThatWasCutShort) {
   EXPECT_EQ(open_study(path_).lacking, "");
   EXPECT_THAT(gaze_seen(), ElementsAre("P02"));
   EXPECT_EQ(test::gaze_of(path_).size(), 3u);  // reading wrote nothing to the database
-  // The export's own event must not take the number of an event in the uncommitted change.
+  // The export's own event must not have the number of an event in the uncommitted change.
   EXPECT_EQ(export_bids(path_, folder_ / "bids", true).people.refused, 1);
   Store(path_, Open::Write);
   EXPECT_THAT(test::gaze_of(path_), ElementsAre("P02"));
@@ -165,7 +165,7 @@ TEST_F(OpeningToRead, OfAWithdrawalThatWasCutShortLeavesThePersonOutAndAWriterFi
   EXPECT_TRUE(read_journal(journal_beside(path_)).forgotten.empty());
 }
 
-/// A reader during a session must not mistake an open transaction for lost data.
+/// A reader beside a session must not take the session's open transaction for lost data.
 TEST_F(OpeningToRead, BesideASessionThatWritesIsNeverRefused) {
   Store store(path_, Open::Write);
   std::atomic<bool> done = false;

@@ -57,8 +57,8 @@ class OwnExports : public ::testing::Test {
     return Connection(database, Open::Read).integer("SELECT count(*) FROM " + table);
   }
 
-  /// Runs `work` in a process that is killed before its `at`th change of a file in the folder. False if it
-  /// ended by itself.
+  /// Runs `work` in a process that is killed before its `at`-th change of a file in the folder. Returns false
+  /// if the process ended before that change.
   bool is_killed(long at, const std::function<void()>& work) {
     const auto ended = faults::run_child(
         {.folder = folder.path(), .kind = faults::CallPlan::Kind::Kill, .at = at, .log = &log}, work);
@@ -71,7 +71,7 @@ class OwnExports : public ::testing::Test {
   faults::CallLog log;
 };
 
-/// A foreign database that claims that several paths here are exports of a person who withdrew.
+/// A foreign database that names several paths of this computer as exports of a person who withdrew.
 class ForeignDatabase : public OwnExports {
  protected:
   ForeignDatabase() {
@@ -127,8 +127,8 @@ TEST_F(ForeignDatabase, DeletesNothingWhenItIsMerged) {
   expect_nothing_deleted("a merge");
 }
 
-// A copy of the study from before P03, with a withdrawal in it, replaces the database; the journal holds
-// more.
+// A copy of the study from before P03, with a withdrawal, replaces the database. The journal has rows that
+// the copy lacks.
 TEST_F(OwnExports, StayWhenTheDatabaseIsNotTheOneThatWasWritten) {
   fs::copy_file(path, folder / "before.db");
   add(path, {"P03"});
@@ -234,7 +234,8 @@ TEST_F(OwnExports, OfARegisterThatOthersMayWriteAreOnlyNamed) {
   EXPECT_FALSE(fs::exists(csv));
 }
 
-/// Files below a folder, except the databases and their journals, that contain the text.
+/// Files below a folder that contain the text, without study.db, the files beside it that begin with its
+/// name, and the folder "state".
 std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -245,8 +246,8 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-// An export that replaces an earlier one is killed at calls spread over its whole length. A withdrawal
-// afterwards must leave no file with the person's code.
+// An export that replaces an earlier one is killed, first before its first change of a file and then
+// 61 changes later each time. A withdrawal afterwards must leave no file with the person's code.
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;
@@ -263,7 +264,8 @@ TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   EXPECT_GT(stops, 10);
 }
 
-// Here the withdrawal itself is killed, and then repeated.
+// The withdrawal is killed, first before its first change of a file and then 37 changes later each time. It
+// is then repeated.
 TEST_F(OwnExports, AreDeletedWhereverTheWithdrawalWasStopped) {
   const StateAt state(folder / "state");
   int stops = 0;

@@ -59,7 +59,7 @@ class PlainDisplay final : public study::Display {
   int rendered = 0;
 };
 
-/// One trial on a virtual clock.
+/// One trial of a TimedStimulus on a virtual clock.
 struct Stage {
   study::VirtualClock clock;
   TimedStimulus stimulus{clock};
@@ -162,7 +162,7 @@ TEST(PlayTrial, RealTimeContentFollowsTheSchedule) {
   Stage stage;
   stage.content.real_time = true;
   stage.content.content_step_s = 0.01;
-  stage.stimulus.cost_ns[2] = 500 * ms;  // late frames do not change what is shown
+  stage.stimulus.cost_ns[2] = 500 * ms;  // late frames do not change the content steps shown
   stage.play({25 * ms, 25 * ms, 100 * ms, 5 * ms, 5 * ms});
   EXPECT_THAT(stage.stimulus.steps, testing::ElementsAre(0, 2, 5, 15, 15));
 }

@@ -14,13 +14,14 @@ inline Protocol asking_protocol(bool gaze = true, bool sharing = true) {
   return parse_protocol(asking_text(gaze, sharing), "asking.toml");
 }
 
-/// Answers of a person on the consent page; none: not answered.
+/// A person's answers on the consent page; an empty one was not given.
 struct Says {
   std::string participant;
   std::optional<int> gaze, sharing;
 };
 
-/// Answers a session's consent page with what its protocol asks.
+/// Answers a session's consent page: yes to taking part, and the permissions in `says`. Without a permission
+/// in `says` the page stays open.
 inline void answer_consent(Store& store, const OpenSession& session, const Says& says) {
   std::vector<KeptAnswer> kept{{"take_part", {score(1), 1}}};
   if (says.gaze) kept.push_back({gaze_question, {score(*says.gaze), 1}});
@@ -28,7 +29,7 @@ inline void answer_consent(Store& store, const OpenSession& session, const Says&
   if (kept.size() > 1) store.answer(session.id, session.units.at(0), 0, kept, true, 900);
 }
 
-/// Adds sessions of these people, answers their consent pages and shows each their first trial.
+/// Adds sessions of these people, answers their consent pages and plays each first trial, which is rated 5.
 inline void add_people(Store& store, const Protocol& protocol, const std::vector<Says>& people,
                        int visit = 1) {
   RunPlan run = run_plan(protocol, {});
@@ -45,7 +46,7 @@ inline void add_people(Store& store, const Protocol& protocol, const std::vector
   }
 }
 
-/// One column of a query's result as text, one line per row; "~" for null.
+/// One column of a query's result as text; "~" stands for null.
 inline std::vector<std::string> column(const std::filesystem::path& path, const std::string& sql) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   std::vector<std::string> out;
@@ -53,7 +54,7 @@ inline std::vector<std::string> column(const std::filesystem::path& path, const 
   return out;
 }
 
-/// "P01 gaze 1", ... with ~ for what the protocol does not ask.
+/// Lines such as "P01 gaze 1", with "~" for a permission that was never asked for or changed.
 inline std::vector<std::string> permissions_of(const std::filesystem::path& path) {
   return column(path,
                 "SELECT participant || ' ' || what || ' ' || coalesce(granted, '~') FROM permission "

@@ -1,4 +1,4 @@
-/// Permissions after copies of a database were used apart and merged, independent of their clocks.
+/// Permissions after the merge of copies that were used apart. They do not depend on the copies' clocks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TEST_F(PermissionMerge, ARefusalInOneCopyHoldsThoughTheOtherWentOn) {
               ElementsAre("4"));
 }
 
-/// The clock of the station that recorded the consent is years ahead, and then years behind.
+/// The clock of the copy with the consent is far ahead, and then far behind.
 TEST_F(PermissionMerge, ARefusalWinsOverAnAnswerThatDidNotKnowOfIt) {
   change_permissions(here_, "P01", {.gaze = false, .sharing = false});
   change_permissions(there_, "P01", {.gaze = true, .sharing = true});
@@ -96,9 +96,9 @@ TEST_F(PermissionMerge, AConsentThatIsRecordedInTheMergedDatabaseCounts) {
   EXPECT_EQ(test::permissions_of(all), all_allowed_);
 }
 
-/// A random history of one session of P01 in three databases, of which the first continues the session. For
-/// each database the class also computes the rule's result by brute force: a record of a permission counts
-/// unless a later one was made where it was known.
+/// A random history of one session of P01 in three databases. Only the first one continues the session. For
+/// each database the class also computes the result by brute force: a record of a permission counts unless a
+/// later record was made in a database that knew of it.
 class Histories {
  public:
   explicit Histories(unsigned seed) : random_(seed) {}
@@ -261,8 +261,8 @@ class Histories {
                    "SELECT attempt FROM gaze JOIN presentation USING (presentation_id) ORDER BY attempt");
   }
 
-  /// A merge in steps must give the same decisions as one at once, and no additional gaze. It has less gaze
-  /// if the first sources refused, which deleted it.
+  /// A merge in steps must give the same decisions as one at once, and no more gaze. It may have less gaze if
+  /// a person refused in the first sources, because a refusal deletes gaze.
   static void check_steps(Connection& in_steps, Connection& at_once, bool was_refused) {
     EXPECT_EQ(changes_of(in_steps), changes_of(at_once));
     const auto some = gaze_of(in_steps), all = gaze_of(at_once);

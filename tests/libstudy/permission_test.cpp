@@ -49,7 +49,7 @@ TEST(Permission, OneRefusalOfAPersonCountsForAllSessions) {
               ElementsAre("P01 0", "P02 1", "P03 ~"));
 }
 
-/// The fixture's README lists the answers.
+/// The expected answers are those that fixtures/README lists.
 TEST(Permission, OfAnEarlierSchemaFollowsItsAnswers) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";

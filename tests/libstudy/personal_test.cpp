@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Expects a refusal after `change` was made to the closed file.
+/// Expects that the closed file is refused after `change` was made to it.
 template <class Change>
 void expect_refused(const Change& change, const std::string& words) {
   const test::TemporaryFolder folder;
@@ -23,7 +23,7 @@ void expect_refused(const Change& change, const std::string& words) {
   EXPECT_THAT([&] { PersonalFile{database}; }, ThrowsMessage<base::Error>(HasSubstr(words)));
 }
 
-// Deletion uses the index: rows that are missing in it would remain.
+// SQLite deletes rows by the index, so rows that are missing in the index would remain.
 TEST(Personal, AnIndexWithoutItsRowsIsRefused) {
   const auto empty_indices = [](const std::filesystem::path& path) {
     constexpr std::size_t page_bytes = 4096, leaf_of_index = 0x0a;

@@ -39,7 +39,7 @@ inline std::vector<int> order_of(const Plan& plan) {
   return order;
 }
 
-/// Chi-square of counts against their mean, standardised: (chi2 - freedom) / sqrt(2 freedom).
+/// Standardised chi-square of counts against their mean: (scale chi2 - freedom) / sqrt(2 freedom).
 inline double chi_square_z(const std::vector<int>& counts, double freedom, double scale = 1) {
   const double expected = std::accumulate(counts.begin(), counts.end(), 0.0) / double(counts.size());
   double chi2 = 0;

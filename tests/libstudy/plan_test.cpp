@@ -28,7 +28,8 @@ TEST(Random, PhiloxGivesThePublishedAnswers) {
 }
 
 TEST(Random, BelowRejectsInsteadOfFolding) {
-  // A bound of 3/4 of the range: folding would draw the lower third twice as often as the rest.
+  // A bound of 3/4 of the range: reduction modulo the bound would draw the lower third twice as often as each
+  // other third.
   const std::uint64_t bound = 3ull << 62;
   study::RandomStream random(1);
   int lower = 0;
@@ -66,8 +67,8 @@ TEST(Plan, HoldsEverySettingOnceWithItsOwnSeed) {
   EXPECT_EQ(seeds.size(), 21u);
 }
 
-// Counts over 200 people how often each setting is at each place, and how often it follows each other
-// setting.
+// Over 200 people, counts how often each setting is at each place, and how often each setting follows each
+// other one.
 TEST(Plan, PermutesThePilotEvenlyOver200People) {
   const auto protocol = shipped("ptpe_pilot");
   constexpr std::size_t n = 21;
@@ -82,7 +83,8 @@ TEST(Plan, PermutesThePilotEvenlyOver200People) {
       ++successors[now * (n - 1) + next - (next > now)];
     }
   }
-  // Sums of permutation matrices: (n - 1) / n of the statistic has (n - 1)^2 degrees of freedom.
+  // The counts of places are sums of permutation matrices of size n: (n - 1) / n of their chi-square has (n -
+  // 1)^2 degrees of freedom.
   EXPECT_LT(std::abs(chi_square_z(places, 400, 20.0 / 21)), 4);
   EXPECT_LT(std::abs(chi_square_z(successors, 419)), 4);
 }
@@ -241,8 +243,8 @@ struct Golden {
 
 class GoldenPlan : public testing::TestWithParam<Golden> {};
 
-// The numbers must be equal on every machine and in every build, with CUDA or without. The protocols' own
-// hashes are left out, so that changed words in a protocol change none of these.
+// The plans must be equal on every machine and in every build, with CUDA or without. The protocols' hashes,
+// which seed the plans, are set to zero, so that a changed word in a protocol changes no plan.
 TEST_P(GoldenPlan, StaysTheSame) {
   const auto& golden = GetParam();
   auto protocol = shipped(golden.protocol);
@@ -271,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(Plans, GoldenPlan,
                                          Golden{"task2_lab", "", 7, 4, "bb3f740fda5ed94a"},
                                          Golden{"demo", "", 7, 0, "1db73a21b4545640"}));
 
-// Computed by an independent implementation of Philox and Durstenfeld's shuffle.
+// An independent implementation of Philox and Durstenfeld's shuffle computed the expected order.
 TEST(Plan, ShufflesAsAnIndependentImplementationDoes) {
   auto protocol = shipped("ptpe_pilot");
   protocol.sha256 = std::string(64, '0');

@@ -28,7 +28,7 @@ const TimingProfile hitching{
 const TimingProfile low{.kind = ProfileKind::Floor, .mean_fps = 50, .low_fps = 25};
 const TimingProfile trace{.kind = ProfileKind::Trace, .frame_ms = {10, 20, 30}};
 
-/// Times at which intervals longer than this begin, s.
+/// Times in s at which intervals longer than `longer_than_s` begin.
 std::vector<double> onsets_of_long(const std::vector<double>& intervals_s, double longer_than_s) {
   std::vector<double> out;
   double time_s = 0;

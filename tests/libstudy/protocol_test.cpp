@@ -166,7 +166,7 @@ TEST(Protocol, TasksHaveTheMomentsOfThePapersTable2) {
   EXPECT_EQ(row_count, 29);
 }
 
-/// Compares the stimuli, rules, steps and questions of trials: a lab variant must not change them.
+/// Expects equal stimuli, rules, steps and questions of trials: a lab variant must not change them.
 void expect_same_trials(const study::Protocol& one, const study::Protocol& other) {
   EXPECT_EQ(moments_of(one), moments_of(other));
   EXPECT_EQ(one.design.groups, other.design.groups);

@@ -103,8 +103,8 @@ TEST(OwnExport, SaysWhoMayBeShared) {
     const auto line = sessions.substr(0, at);
     ends.push_back(line.substr(line.rfind(',', line.rfind(',') - 1)));
   }
-  // P01, the refuser, both visits of the later refuser, the person without an answer, the person who was not
-  // asked.
+  // The rows are of P01, the refuser, both visits of the person who refuses later, the person without an
+  // answer, and P05, who was not asked.
   EXPECT_THAT(ends,
               ElementsAre(",sharing_allowed,gaze_allowed", ",1,1", ",0,1", ",0,1", ",0,0", ",0,1", ",,1"));
   const std::string dictionary = test::bytes_of(folder / "csv/dictionary.csv");

@@ -29,15 +29,15 @@ std::vector<FpsSetting> pilot_settings() {
 
 double sd_tolerance(const FpsSetting& setting) { return std::max(0.02 * setting.sd, 0.25); }
 
-/// The longest unquantised interval in refresh periods, rounded up.
+/// The longest interval of the setting before rounding to refresh periods, in periods, rounded up.
 int hold_bound(const FpsSetting& setting, double refresh_hz) {
   const double slowest = study::exact_rates(setting, {}).front();
   return static_cast<int>(std::ceil(refresh_hz / slowest - 1e-9));
 }
 
-/// Brute force, independent of the search: dynamic programming over frames and periods gives the exact
-/// extreme of sum (R/k - c)^2 over all lists of n holds of 1 ... longest periods with `total` periods in all.
-/// Divided by n it is the extreme over all lists of variance + (arithmetic mean - c)^2.
+/// Brute force, independent of the search: dynamic programming over frames and periods. It finds the least or
+/// greatest sum of (refresh_hz / k - c)^2 over all lists of n holds k of 1 to `longest` periods that take
+/// `total` periods. Returns this sum / n, the extreme of variance + (arithmetic mean - c)^2.
 double extreme_square(int n, int total, int longest, double refresh_hz, double c, bool largest) {
   const double worst = largest ? -1 : std::numeric_limits<double>::infinity();
   const auto spare = static_cast<std::size_t>(total - n);  // periods beyond one for each frame
@@ -59,17 +59,17 @@ double extreme_square(int n, int total, int longest, double refresh_hz, double c
   return best[spare] / n;
 }
 
-/// True if the brute force rules out every list of holds for the setting. It computes extremes on a grid of
-/// c: the least variance is at least the smallest of the least extremes minus (spacing / 2)^2, and the
-/// greatest variance is at most the smallest of the greatest extremes.
+/// True if brute force rules out every list of holds for the setting. It computes the extremes for a grid of
+/// c. The least variance is at least the smallest of the least extremes minus (spacing / 2)^2. The greatest
+/// variance is at most the smallest of the greatest extremes.
 bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const int n = static_cast<int>(setting.mean * setting.duration_s);
   const double periods = refresh_hz * setting.duration_s;
   const int longest = hold_bound(setting, refresh_hz);
   const double top = setting.sd + sd_tolerance(setting);
   const double floor = std::max(0.0, setting.sd - sd_tolerance(setting));
-  // The arithmetic mean exceeds the harmonic mean by a limited share: mean(f) / harmonic mean - 1 = -cov(f,
-  // 1/f) <= sd(f) sd(1/f).
+  // The arithmetic mean of the rates f exceeds their harmonic mean by a limited share: mean(f) / harmonic
+  // mean - 1 = -cov(f, 1/f) <= sd(f) sd(1/f).
   const double reach = setting.mean * (1 + top * (longest - 1) / (2 * refresh_hz));
   const double spacing = 0.2;
   double least = std::numeric_limits<double>::infinity(), most = least;
@@ -81,7 +81,7 @@ bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   return least - spacing * spacing / 4 > top * top || most < floor * floor;
 }
 
-/// Checks the exact conditions of the definition on the list itself.
+/// Checks the conditions of an exact list on the list itself.
 void expect_exact_list(const FpsSetting& setting, const study::RefreshVerdict& verdict, double refresh_hz) {
   ASSERT_EQ(verdict.holds.size(), static_cast<std::size_t>(setting.mean * setting.duration_s));
   EXPECT_EQ(std::accumulate(verdict.holds.begin(), verdict.holds.end(), 0), refresh_hz * setting.duration_s);
@@ -105,9 +105,9 @@ struct Count {
 
 class PilotOnRefresh : public testing::TestWithParam<Count> {};
 
-// Every exact setting is proved by its list, every other one by brute force. At 72 Hz a count with two holds
-// of fractional frequency gives 11: (50, 15) would need 31.43 of 500 frames held 8 periods. Whole frames
-// reach no sd below 15.35, and 15.3 is the bound.
+// An exact setting is proved by its list of holds; any other setting is disproved by brute force. At 72 Hz
+// (50, 15) would be exact if fractions of frames were possible, with 31.43 of 500 frames held for 8 periods.
+// With whole frames the least SD is 15.35 frames/s, above the bound of 15.3.
 TEST_P(PilotOnRefresh, HasThisManyExactSettings) {
   const auto [refresh_hz, expected] = GetParam();
   int exact = 0;
@@ -142,7 +142,7 @@ TEST(Quantise, BruteForceRulesOutNothingThatExists) {
 }
 
 TEST(Quantise, BoundsHoldWhatTheBruteForceFinds) {
-  // The least and greatest variance over whole holds lie within the bounds over distributions.
+  // The SD of every list of whole holds lies within the bounds, which hold for any distribution of holds.
   study::HoldTarget target;
   target.refresh_hz = 60;
   target.longest = 5;
@@ -186,7 +186,7 @@ TEST(Quantise, ApproximateKeepsTheMeanAndTheBound) {
   const auto verdict = study::quantise(setting, {}, 90, 1);
   EXPECT_EQ(verdict.feasibility, Feasibility::Approximate);
   EXPECT_NEAR(verdict.mean, 50, 0.25);
-  EXPECT_GE(verdict.sd, 16);  // forced by 50 frames/s on 90 Hz
+  EXPECT_GE(verdict.sd, 16);  // a mean of 50 frames/s forces it at 90 Hz
   EXPECT_LE(verdict.longest_hold, hold_bound(setting, 90));
   EXPECT_THAT(verdict.reason, testing::HasSubstr("forces an sd of 18"));
 }

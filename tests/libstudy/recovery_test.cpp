@@ -26,7 +26,8 @@ using sqlite::Open;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Runs `action` in a child process that ends like a killed one: nothing is closed. Returns its result.
+/// Runs `action` in a child process that ends without closing anything, as a killed process does. Returns the
+/// action's result.
 int in_child(const std::function<int()>& action) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -111,7 +112,7 @@ TEST(Recovery, StatusIsReadBesideASessionThatCopiesItsLog) {
   EXPECT_EQ(Store(path, Open::Write).open_runs().size(), 1u);
 }
 
-/// Runs `action` as a user who may read the files but write nothing.
+/// Runs `action` as a user who may read the files and write nothing.
 int as_reader(const fs::path& path, const std::function<int()>& action) {
   const fs::path folder = path.parent_path();
   for (const auto& entry : fs::directory_iterator(folder)) ::chmod(entry.path().c_str(), 0444);
@@ -159,7 +160,8 @@ TEST(Recovery, WhereNothingMayBeWrittenAClosedFileAndABackupAreRead) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), files);
 }
 
-/// Dies in a transaction without a log: the file has changed pages, and the journal beside it undoes them.
+/// Ends in a transaction of a database without a log. The file has changed pages, and the rollback journal
+/// beside it has their earlier content.
 void die_with_a_journal(const fs::path& path, const std::string& sql) {
   EXPECT_EQ(in_child([&] {
               Connection database(path, Open::Create);

@@ -1,4 +1,4 @@
-/// docs/protocol.md against the keys that the readers of protocols ask for.
+/// docs/protocol.md against the keys that the readers of protocols look up.
 
 #include "libstudy/protocol/reference.hpp"
 
@@ -31,8 +31,8 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   return out;
 }
 
-/// Replaces scores in `anchors`, keys of an effect and names of factors by the placeholders of the reference.
-/// A level's keys are listed once, under stimulus.
+/// Replaces scores in `anchors`, keys of an effect and names of factors by the reference's placeholders. Keys
+/// of a level become keys of stimulus, where the reference lists them.
 std::string without_scores(const std::string& name) {
   static const std::regex effect(R"((effect_set\.effect)\.(?!kind$)\w+$)"), score(R"(anchors\.[0-9]+$)"),
       level(R"(^factor\.level\.(?!name$))"), factor(R"(^(combination|design\.standard)\.\w+$)");
@@ -42,7 +42,7 @@ std::string without_scores(const std::string& name) {
   return std::regex_replace(out, factor, "$1.FACTOR");
 }
 
-/// All keys that are asked for when all protocols of the source tree are read.
+/// All keys that the readers look up in all protocols of the source tree.
 const test::AskedKeys& asked_keys() {
   static const auto asked = [] {
     test::AskedKeys out;
@@ -87,8 +87,8 @@ std::string with(const std::string& protocol, const study::KeyReference& key, co
   return out;
 }
 
-// Sets each choice to each of its words, because the files use only some of them, and a word may have keys of
-// its own. The reference must name every key for which the reader asks.
+// Sets each choice to each of its words, because the files use only some words, and a word may bring further
+// keys. The reference must name every key that the reader looks up.
 TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
   const auto known = test::names_of(study::protocol_reference());
   int words = 0, keys = 0;
@@ -99,7 +99,7 @@ TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
         const auto root = base::parse_toml(with(text, key, word), file.filename());
         try {
           study::read_protocol_table(root);
-        } catch (const base::Error&) {  // keys asked for until then count
+        } catch (const base::Error&) {  // the keys looked up until the error count
         }
         for (const auto& [name, what] : root.asked()) {
           EXPECT_TRUE(known.contains(without_scores(name))) << name << " with " << key.key << " = " << word;

@@ -37,8 +37,8 @@ std::string bytes_of_number(double value) {
   return bytes;
 }
 
-/// P01 and P02 allow gaze. P01 has a gaze sample, a head pose and a validation in each of two visits; P02 in
-/// one.
+/// P01 and P02 allow gaze. P01 has a gaze sample, a head pose and a validation in each of two visits, P02 in
+/// one visit.
 fs::path make_study(const test::TemporaryFolder& folder) {
   const fs::path path = test::gaze_of_two(folder, telling);
   Connection(path, Open::Write)
@@ -166,7 +166,8 @@ TEST(Refusal, InAMergeNamesTheExportsBesideTheResult) {
   EXPECT_THAT(merge({other}, path).beside.left, IsEmpty());
 }
 
-/// A kill, an earlier version or a fault may leave gaze rows of a person who refuses.
+/// The database has gaze rows of a person who refuses, as a kill, an earlier version or a fault may leave
+/// them.
 TEST(Refusal, KeepsGazeOutOfExportsThoughItStandsInTheDatabase) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);

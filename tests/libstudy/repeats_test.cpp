@@ -1,5 +1,5 @@
-/// No repeated cut makes a stimulus flash: a trial is repeated up to three times, with black between, then
-/// the session pauses.
+/// Repeated cuts do not make a stimulus flash: a trial is repeated up to three times, with black between the
+/// showings. Then the session pauses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ class Person final : public Participant {
   test::Scripted& scripted_;
 };
 
-/// One trial without black of its own, on a Lamp.
+/// A session of asking_protocol() on a Lamp.
 struct Flashing : test::OneSession {
   Flashing() : OneSession(test::asking_protocol()) {
     person.says[gaze_question] = test::score(1);

@@ -60,7 +60,7 @@ TEST_F(RunSettings, StandInTheSessionsTableAndAsFilesOfTheCsvExport) {
   for (const char* text : {text_a, text_b})
     EXPECT_EQ(test::bytes_of(folder_ / "csv" / ("setting_" + base::sha256_hex(text).substr(0, 12) + ".toml")),
               text);
-  // An export with such files is recognised as an export, which another one may replace.
+  // An export with settings files is recognised as an export, so another export may replace it.
   export_csv(study_with("{}"), folder_ / "csv", {});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "csv" /
                                        ("setting_" + base::sha256_hex(text_a).substr(0, 12) + ".toml")));
@@ -76,7 +76,7 @@ TEST_F(RunSettings, AreReadForEachSession) {
   }
 }
 
-// Options of an earlier version or another program have no settings, and are no error.
+// Options of an earlier version or another program have no settings, which is no error.
 TEST_F(RunSettings, OptionsWithoutAnyHaveNone) {
   for (const char* options : {"{}", "no json", "[]", R"({"settings":[]})"}) {
     const auto path = study_with(options);

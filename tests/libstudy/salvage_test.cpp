@@ -25,7 +25,7 @@ using ::testing::ThrowsMessage;
 
 constexpr std::size_t page_bytes = 4096;
 
-/// A small study, its content and its bytes, to be damaged again and again.
+/// A small study, its content and its bytes. Tests damage it again and again.
 class Salvaging : public ::testing::Test {
  protected:
   Salvaging() {
@@ -98,12 +98,12 @@ class Salvaging : public ::testing::Test {
       expect_no_answer_invented_or_changed();
       const auto found = test::answers_of(into).size();
       EXPECT_EQ(done.answers_database, static_cast<std::int64_t>(found));
-      // Missing answers are reported as lost, or as rows without an owner.
+      // A missing answer must be reported as lost, or as a row without an owner.
       EXPECT_TRUE(found == truth.size() || !done.answers_lost.empty() || !done.rows_lost.empty());
       return found == truth.size();
     } catch (const base::Error& error) {
       EXPECT_THAT(error.what(),
-                  HasSubstr("nothing of a study was found"));  // the page of sessions is destroyed
+                  HasSubstr("nothing of a study was found"));  // because the page of sessions is destroyed
       return false;
     }
   }
@@ -119,7 +119,8 @@ class Salvaging : public ::testing::Test {
     }
     EXPECT_GE(found_all, tried / 2);
   }
-  /// Cuts the file at every `step`-th page end, and, without a journal, within pages.
+  /// Cuts the file at every `step`-th end of a page, with its journal. Without its journal, cuts it also
+  /// within pages.
   void cut(std::size_t step) {
     for (std::size_t end = 0; end < bytes.size(); end += step * page_bytes) {
       SCOPED_TRACE(end);
@@ -138,7 +139,7 @@ class Salvaging : public ::testing::Test {
   std::string bytes, journal;
 };
 
-/// A step that tries some pages and cuts; all of them take most of a minute, in a slow test.
+/// Step of the fast tests. The slow tests damage every page and cut at every page's end.
 constexpr std::size_t some = 5;
 class SalvagingSlow : public Salvaging {};
 
@@ -180,7 +181,8 @@ TEST_F(Salvaging, AJournalTornAnywhereGivesWhatWasKeptBefore) {
   fs::remove(path);
   const std::size_t last = journal.rfind("\"table\":\"response\"");
   std::size_t most = 0;
-  // Cuts the journal at every 151st byte, near its end at every third, and at each of its last 20 bytes.
+  // Cuts the journal behind the start of its last answer: at every 151st byte, at every third of the last 170
+  // bytes, and at each of the last 20.
   const auto step = [&](std::size_t left) { return left < 20 ? 1 : left < 170 ? 3 : 151; };
   for (std::size_t end = last; end <= journal.size(); end += step(journal.size() - end)) {
     SCOPED_TRACE(end);

@@ -98,7 +98,8 @@ std::string error_of(const FpsSetting& setting, const PacingRules& rules) {
 }
 
 TEST(Schedule, NoSolutionNamesTheSettingAndWhy) {
-  // Ten frames of an exponential distribution above 4 frames/s cannot have a mean this near to their sd.
+  // Ten frames of exponentially distributed rates above 4 frames/s cannot have a mean as low as 20 with an SD
+  // of 15.
   EXPECT_THAT(error_of({20, 15, 0.5}, rules_with(FpsMean::Arithmetic)),
               testing::AllOf(testing::HasSubstr("setting (20, 15) over 0.5 s"),
                              testing::HasSubstr("at least 20.6"), testing::HasSubstr("lower fps_min")));
@@ -173,7 +174,7 @@ TEST(FrameOrder, TraceGivesItsRanks) {
   rules.trace_rates = {30, 10, 50, 20, 40};
   const auto rates = study::ordered({1, 2, 3, 4, 5}, rules, 1);
   EXPECT_EQ(rates, (std::vector<double>{3, 1, 5, 2, 4}));
-  // Twice the length: the pattern repeats.
+  // Twice as many frames: the same places of both halves are above the median, but for the first place.
   const auto longer = study::ordered({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, rules, 1);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ((longer[i] > 5.5), (longer[i + 5] > 5.5) || i == 0);
 }
@@ -185,20 +186,21 @@ TEST(FrameOrder, LagOneOfKnownLists) {
 }
 
 TEST(TruncatedNormal, TendsToItsLimits) {
-  // Not truncated: a normal around -cut. Its quartiles lie 0.674489750196 standard deviations out.
+  // Not truncated: a normal distribution around -cut. Its quartiles lie 0.674489750196 standard deviations
+  // from the mean.
   const auto bell = study::truncated_normal_strata(-12, INFINITY, 2);
   EXPECT_NEAR(bell[0], 12 - 0.6744897501960817, 1e-12);
   EXPECT_NEAR(bell[1], 12 + 0.6744897501960817, 1e-12);
   // Truncated at the mean: the median of a half-normal.
   EXPECT_NEAR(study::truncated_normal_strata(0, INFINITY, 1)[0], 0.6744897501960817, 1e-14);
-  // Far out: exponential with rate `cut`.
+  // Far out in the tail: an exponential distribution with the rate `cut`.
   const auto tail = study::truncated_normal_strata(1e6, INFINITY, 2);
   EXPECT_NEAR(tail[0] * 1e6, -std::log(0.75), 1e-11);
   EXPECT_NEAR(tail[1] * 1e6, -std::log(0.25), 1e-11);
-  // A narrow window around the mean: uniform.
+  // In a narrow window around the mean: a uniform distribution.
   const auto flat = study::truncated_normal_strata(-5e-4, 1e-3, 4);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(flat[i] / 1e-3, (static_cast<double>(i) + 0.5) / 4, 1e-7);
-  // Mirror images.
+  // Mirrored windows give mirrored values.
   const auto left = study::truncated_normal_strata(-5, 3, 7);
   const auto right = study::truncated_normal_strata(2, 3, 7);
   for (std::size_t i = 0; i < 7; ++i) EXPECT_NEAR(left[i], 3 - right[6 - i], 1e-13);

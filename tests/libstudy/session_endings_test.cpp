@@ -18,7 +18,8 @@ using test::paced_pairs;
 using test::wish_at_frame_5;
 using ::testing::ElementsAre;
 
-/// The pilot of one setting, with consent, a symptom scale that stops at 12 and a refusable screening.
+/// The shipped pilot with a screening question that can rule a person out, and a symptom scale that stops the
+/// session from 12 on.
 Protocol guarded() {
   return parse_protocol(
       test::with_before(test::shipped_text("ptpe_pilot"), "[[block]]\nkind = \"stimulus\"", R"([[block]]
@@ -107,7 +108,7 @@ TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
   bool wished = false;
   SessionHooks hooks;
   hooks.request = [&] {
-    // In the rest between the two questions of the first trial.
+    // During the rest between the two questions of the first trial.
     const bool now = !wished && one.person.seen.size() > 1 && one.person.seen.back() == "rest 9";
     wished = wished || now;
     return now ? Request(CutCause::Experimenter) : Request::GoOn;

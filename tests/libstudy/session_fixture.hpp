@@ -1,5 +1,5 @@
 #pragma once
-/// Sessions on the virtual clock without pictures, for tests, with scripted participants.
+/// Sessions without pictures on the virtual clock, with scripted participants, for tests.
 
 #include <cmath>
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace study::test {
 
-/// One stimulus without pictures for all cells; records the methods asked for.
+/// The same stimulus without pictures for all cells. Records the methods of the cells.
 class NullStimuli final : public StimulusSource {
  public:
   explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
@@ -48,7 +48,8 @@ inline std::unique_ptr<Observer> ptpe_observer() {
   return make_observer("ptpe:a=31,b=0.035", features);
 }
 
-/// A participant with scripted answers: question -> answer, 1 for every other question.
+/// A participant with scripted answers: `says` has the answer of a question; any other question is answered
+/// by 1.
 class Scripted final : public Participant {
  public:
   std::optional<std::string> simulated() const override { return "scripted"; }
@@ -118,14 +119,14 @@ inline Protocol paced(const std::string& text) {
                         "pairs.toml");
 }
 
-/// pairs() paced. `policy`: its on_interruption; `more`: further blocks.
+/// pairs() changed by paced(). `policy`: the value of on_interruption; `more`: further blocks.
 inline Protocol paced_pairs(const std::string& policy = "", const std::string& more = "") {
   const std::string text = pairs_text() + more, judge = "id = \"judge\"\n";
   return paced(policy.empty() ? text
                               : replaced(text, judge, judge + "on_interruption = \"" + policy + "\"\n"));
 }
 
-/// paced() on pairs.toml, with a consent page that asks only whether one takes part.
+/// pairs.toml changed by paced(), with a consent page that asks only whether the person takes part.
 inline Protocol consented() { return paced(without(protocol_text("pairs"), {"gaze_kept", "data_shared"})); }
 
 /// One session of a protocol in its own database.
@@ -155,7 +156,7 @@ struct OneSession {
   Scripted person;
 };
 
-/// Requests `wish` at frame 5 of each of the first `showings` showings.
+/// Makes `request` after frame 5 of each of the first `showings` showings.
 inline SessionHooks wish_at_frame_5(Request request, int showings) {
   auto frame = std::make_shared<std::int64_t>(-1);
   auto left = std::make_shared<int>(showings);

@@ -26,7 +26,7 @@ using test::OneSession;
 using test::paced_pairs;
 using test::ptpe_observer;
 
-/// One process's part of a study: plays open sessions until `frames` more frames were shown.
+/// One process's part of a study: plays open sessions, and stops after `frames` frames.
 void play(Store& store, const Protocol& protocol, std::int64_t frames) {
   Desk desk(protocol);
   const auto observer = ptpe_observer();
@@ -70,7 +70,7 @@ TEST(Session, PlaysThePlanAndTheRealisedMomentsAreTheNominalOnes) {
   ASSERT_EQ(certificate.size(), 21u);
   for (const CertificateRow& row : certificate) EXPECT_EQ(row.pass, 1);
   const StudyStatus status = read_status(folder / "study.db");
-  EXPECT_EQ(status.frames, 7000);  // 10 s at 10 (2x), 20 (4x), 30, 40 and 50 (5x) frames/s
+  EXPECT_EQ(status.frames, 7000);  // 10 s each: 2 settings of 10 frames/s, 4 of 20, 5 each of 30, 40 and 50
   EXPECT_EQ(status.protocols.at(0).answered, 21);
   EXPECT_TRUE(status.sessions.at(0).ended);
 }
@@ -88,7 +88,8 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   for (bool done = false; !done;) {
     Store store(folder / "cut.db", Open::Write);
     try {
-      // A prime stride, so that stops fall into gaps, first and later frames of different trials.
+      // The number of frames grows, so that stops fall into pauses, first frames and later frames of
+      // different trials.
       play(store, protocol, 1009 + 37 * stops);
       done = true;
     } catch (const Stopped&) {
@@ -225,8 +226,7 @@ TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
   EXPECT_THROW(one.run(), base::Error);
 }
 
-/// A frame's row holds the facts that the fluid reports; the session adds none of its own. Here under timing
-/// "table2".
+/// A frame's row has the facts that the fluid reports, and no other. The timing here is "table2".
 TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
   class Accounting final : public Stimulus {
    public:
@@ -307,7 +307,7 @@ TEST(TrialIntervals, OnAFixedRefreshAreWholePeriodsWithoutDrift) {
 
 TEST(TrialIntervals, WhatADisplayCannotShowIsRefusedUnlessAccepted) {
   const Protocol protocol = test::pilot();
-  // On 90 Hz, 50 frames/s forces delta >= 16.
+  // At 90 Hz a mean of 50 frames/s forces an SD of 18 frames/s.
   EXPECT_THROW(trial_intervals(protocol, {50, 0, 10}, FixedRefresh(90), 1), base::Error);
   EXPECT_THROW(check_settings(protocol, FixedRefresh(90)), base::Error);
   check_settings(protocol, NullDisplay());

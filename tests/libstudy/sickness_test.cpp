@@ -48,7 +48,8 @@ class SicknessStudy : public ::testing::Test {
     throw std::logic_error("no open unit of " + block);
   }
 
-  /// Gives all items the same score, except one that is left out (from 1; 0: none).
+  /// Answers all items with the same score, but for item `left_out`, which is not answered. 0 leaves out
+  /// none.
   void answer_ssq(const std::string& block, int score, int left_out = 0) {
     std::vector<KeptAnswer> kept;
     for (int item = 1; item <= stats::ssq_item_count; ++item) {

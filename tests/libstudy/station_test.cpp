@@ -36,7 +36,8 @@ TEST(StationNumber, IsReadFromTheEndOfTheName) {
     EXPECT_THROW(parse_station_number(wrong), base::Error) << wrong;
 }
 
-// Stations that each record the same number of people are together as balanced as one station.
+// Stations that each record the same number of people are together as balanced as one station with all of
+// them.
 TEST(StationNumber, SharesTogetherAreTheWholeAssignment) {
   for (const char* name : {"task1", "task2", "task1_lab", "ptpe_pilot"}) {
     const Protocol protocol = test::shipped(name);
@@ -114,7 +115,7 @@ TEST(StationMerge, TwoStationsOfSixUseEachSequenceOnceAndOrderP01Differently) {
   EXPECT_EQ(describe(done.balance[0]), "task1 1.0, 12 sessions: 12 sequences, each used once");
   EXPECT_THAT(done.station_troubles, IsEmpty());
   EXPECT_NE(orders_of(folder / "a.db")[0], orders_of(folder / "b.db")[0]);
-  // An earlier copy and the result itself do not count as other stations.
+  // An earlier copy of a station and the earlier result of the merge do not count as further stations.
   fs::copy_file(folder / "a.db", folder / "copy.db");
   record_six(folder / "a.db", "1/2", 7);
   const Merge again = merge({folder / "copy.db", folder / "a.db", folder / "b.db"}, folder / "all.db");

@@ -86,7 +86,7 @@ inline std::vector<FrameRecord> frames(std::int64_t start_ns, std::int64_t count
   return all;
 }
 
-/// Shows a trial's stimuli once more; returns the number of the new attempt.
+/// Shows a trial's stimuli once more. Returns the number of the attempt, from 1.
 inline int show(Store& store, const OpenSession& session, const OpenUnit& unit, std::int64_t count = 40) {
   const std::int64_t start_ns = 1'000'000'000'000;
   const int attempt = unit.attempts + 1;
@@ -103,7 +103,7 @@ inline int show(Store& store, const OpenSession& session, const OpenUnit& unit, 
 inline Answer words(const std::string& text) { return {{}, text}; }
 inline Answer score(int value) { return {value, {}}; }
 
-/// Shows the unit if it is a trial, and answers one question, which ends it.
+/// Shows the unit if it is a trial, answers one question, and ends the unit.
 inline void answer_one(Store& store, const OpenSession& session, const OpenUnit& unit,
                        const std::string& question, const Answer& answer) {
   const int attempt = unit.trial ? show(store, session, unit) : 0;

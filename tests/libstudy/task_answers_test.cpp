@@ -308,7 +308,7 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
 }
 
-// Angles in sessions of an earlier version are not known, before the upgrade and after it.
+// For a session of an earlier version, the angles are not known, before and after the upgrade.
 TEST(TaskAnswers, AnEarlierVersionsAnglesAreNotKnown) {
   const test::TemporaryFolder folder;
   test::write_version_1(folder / "old.db");

@@ -15,7 +15,7 @@ using study::Plan;
 using study::PlannedTrial;
 using study::Protocol;
 
-/// "scene n_*, scene n_*" in the order of a participant's trials.
+/// "scene number_of_particles, ..." in the order of a participant's trials.
 std::string sequence_of(const Protocol& protocol, const Plan& plan) {
   std::string out;
   int last = -1;
@@ -69,8 +69,7 @@ TEST(Task1Plan, PaperRandomDrawsScenesAndNStarFreely) {
   std::map<std::string, int> count;
   for (int person = 0; person < 480; ++person)
     ++count[sequence_of(protocol, study::make_plan(protocol, "P" + std::to_string(person), 1, 0))];
-  // Six orders of two scenes, each with either n_*: never the same scene twice, but sometimes the same n_*
-  // twice.
+  // Six orders of two different scenes, each with one of two numbers of particles: 24 sequences.
   ASSERT_EQ(count.size(), 24u);
   std::vector<int> counts;
   for (const auto& [sequence, times] : count) {
@@ -101,8 +100,8 @@ TEST(Task1Plan, WilliamsRowsAreBalancedWithinEachSequence) {
   for (const auto& [what, count] : successors) EXPECT_EQ(count, 2);
 }
 
-/// (scene, method, method), the methods ordered by name -> in how many trials the first of them was shown
-/// first, and in how many second.
+/// Key: scene and two methods in the order of their names. Value: the number of trials that show the first
+/// method first, and the number that show it second.
 using IntervalCounts = std::map<std::tuple<std::string, std::string, std::string>, std::pair<int, int>>;
 
 void count_intervals(const Protocol& protocol, const Plan& plan, IntervalCounts& counts) {
@@ -144,7 +143,7 @@ TEST(Task2Plan, CouplesOfRoundsShowEachPairInBothOrders) {
     for (const auto& [what, count] : one) pattern.push_back(count.first == 1);
     patterns.insert(pattern);
   }
-  EXPECT_GT(patterns.size(), 10u);  // groups of six slots differ
+  EXPECT_GT(patterns.size(), 10u);  // groups of six slots have different patterns
 }
 
 TEST(Task2Plan, Deals26PeopleThreeScenesNearlyEqually) {
@@ -181,7 +180,7 @@ TEST(Task2Plan, PaperRandomDrawsIntervalsFreely) {
 TEST(Task2Plan, RowsMeetBothIntervalOrders) {
   auto protocol = shipped("task2");
   protocol.design.order = study::TrialOrder::Latin;
-  // (scene, pair in the first trial) -> both orders equally often
+  // Each scene and pair in the first trial must occur in both orders equally often.
   IntervalCounts counts;
   for (int slot = 0; slot < study::slot_count(protocol); ++slot) {
     auto plan = study::make_plan(protocol, "P", 1, slot);

@@ -8,7 +8,7 @@
 
 namespace study::test {
 
-/// Two participants: P01 answered every trial; `second` answered one of two trials, and the other one was
+/// P01 answered every trial. The participant `second` answered one of two trials, and the other trial was
 /// interrupted.
 inline void write_version_1(const std::filesystem::path& path, const std::string& second = "P02") {
   const auto database = open_database(path, sqlite::Open::Create, {read_schema_steps().front()});

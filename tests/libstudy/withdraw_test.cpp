@@ -22,7 +22,7 @@ using ::testing::ThrowsMessage;
 
 constexpr const char* leaver = "QXJ7withdraws";
 constexpr const char* secret = "zebra-of-the-north";
-// SQLite stores an eight-byte integer with these bytes.
+// SQLite stores this eight-byte integer as telling_bytes.
 constexpr std::int64_t telling_start_ns = 0x1122334455667788;
 const std::string telling_bytes = "\x11\x22\x33\x44\x55\x66\x77\x88";
 
@@ -37,7 +37,7 @@ int occurrences(const fs::path& folder, const std::string& needle) {
   return found;
 }
 
-/// Two participants of the pairs study; the leaver's words are the secret wherever words are stored.
+/// Two participants of the pairs study. All words of the participant `leaver` are the secret.
 void write_study(const fs::path& path) {
   Store store(path, Open::Create);
   store.add_run(test::run_plan(test::pairs(), {leaver, "P02"}));
@@ -75,8 +75,8 @@ TEST(Withdraw, LeavesNoTraceOfTheAnswers) {
   EXPECT_EQ(look.text("SELECT participant FROM tombstone"), leaver);
   look.execute("PRAGMA foreign_keys = ON");
   EXPECT_EQ(look.integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
-  // The code occurs twice in the tombstone, once in its index and twice in the journal's tombstone, nowhere
-  // else.
+  // The code occurs twice in the tombstone's row, once in an index and twice in the journal's tombstone, and
+  // nowhere else.
   EXPECT_EQ(occurrences(folder.path(), leaver), 5);
 }
 
@@ -218,7 +218,7 @@ TEST(Withdraw, TheLogIsStillKeptForAllOthers) {
 TEST(Personal, IsReadableByItsOwnerOnlyAndStandsApart) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
-  base::write_file_atomically(PersonalFile::beside(path), "");  // another program's file, which all may read
+  base::write_file_atomically(PersonalFile::beside(path), "");  // made by another program, readable by all
   PersonalFile file(path);
   EXPECT_EQ(fs::status(PersonalFile::beside(path)).permissions(),
             fs::perms::owner_read | fs::perms::owner_write);

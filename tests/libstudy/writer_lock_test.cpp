@@ -26,16 +26,16 @@ using ::testing::ThrowsMessage;
 
 enum Outcome { Kept = 0, Busy = 1, Failed = 2, Other = 3 };
 
-/// Waits until the other end is closed.
+/// Waits until the other end of the pipe is closed.
 void wait_for(int pipe) {
   char byte = 0;
   while (::read(pipe, &byte, 1) < 0) {
   }
 }
 
-/// Plans a session in a new database, at the same moment as all others of a round, and holds it until
-/// `release`. Every third process finds no room on the disk. `tried` gets a byte once the process has the
-/// database or has failed.
+/// Plans a session in a new database at the same moment as all other processes of a round, and keeps the
+/// database open until `release` is closed. Every third process finds no room on the disk. Writes a byte to
+/// `tried` once it has the database or has failed.
 Outcome start(const fs::path& path, int number, int go, int tried, int release) {
   wait_for(go);
   bool told = false;
