@@ -19,7 +19,7 @@ inline const std::vector<std::string> n_stars{"16k", "32k"};
 inline ScoreScale realism_scale() { return {"realism", "Realism", true, 1, 7, true, {"realism"}, 0.5}; }
 inline ScoreScale sickness_scale() { return {"sickness", "Cybersickness", true, 0, 3, false, {}, 0.25}; }
 
-/// A table of one n_*: columns by method, one row for each participant.
+/// A table for one number of particles: one column for each method, one row for each participant.
 inline ScoreTable table_of(const std::vector<std::vector<double>>& rows, std::vector<std::string> names,
                            ScoreScale scale = realism_scale()) {
   std::vector<MethodScore> scores;
@@ -30,7 +30,8 @@ inline ScoreTable table_of(const std::vector<std::vector<double>>& rows, std::ve
   return {std::move(scale), scores, static_cast<int>(rows.size()), {"16k"}, std::move(names)};
 }
 
-/// Scores of n participants at both n_*: the method's mean, the participant's level, noise.
+/// Scores of n participants at both numbers of particles: the method's mean, plus the participant's level,
+/// plus noise.
 inline ScoreTable normal_table(const std::vector<double>& means, double participant_sd, double noise, int n,
                                std::uint64_t seed, ScoreScale scale = realism_scale()) {
   std::mt19937_64 generator(seed);
@@ -47,8 +48,8 @@ inline ScoreTable normal_table(const std::vector<double>& means, double particip
   return {std::move(scale), scores, n, n_stars, methods};
 }
 
-/// Adds n answers to one pair, the first k of them for a; each from another participant, with a shown first
-/// in every other one.
+/// Adds n answers to the pair of a and b, each of another participant. The first k answers choose a. In every
+/// other answer a was shown first.
 inline void add_pair(std::vector<PairChoice>& choices, int a, int b, int k, int n) {
   for (int i = 0; i < n; ++i) {
     const bool a_first = i % 2 == 0, a_chosen = i < k;
@@ -61,7 +62,7 @@ inline void add_pair(std::vector<PairChoice>& choices, int a, int b, int k, int 
 
 namespace stats {
 
-/// The hypotheses that ship with the programs.
+/// The results for the hypotheses that ship with the programs.
 inline std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                                 const AnalysisPlan& plan, const std::string& untestable) {
   return task1_hypotheses(study::shipped_claims(), realism, sickness, plan, untestable);

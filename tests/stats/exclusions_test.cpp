@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// Trials of one visit with these main ratings and five answers each; all pass.
+/// Trials of one visit that pass: their main ratings, and five answers in each.
 std::vector<TrialRecord> visit(const std::vector<double>& ratings, const std::string& participant = "P1") {
   std::vector<TrialRecord> out;
   for (const double rating : ratings) {
@@ -83,8 +83,8 @@ TEST(Exclusions, RepeatsFarFromTheirOriginals) {
   for (int i = 0; i < 2; ++i) {
     TrialRecord repeat = trials[0];
     repeat.position = 10 + i;
-    repeat.repeats = i;         // originals 4 and 5
-    repeat.answer = i ? 1 : 7;  // 3 and 4 points apart
+    repeat.repeats = i;         // the originals' answers are 4 and 5
+    repeat.answer = i ? 1 : 7;  // 3 and 4 points from the originals
     trials.push_back(repeat);
   }
   const auto found = find_exclusions(trials, {}, {}, false);

@@ -11,8 +11,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Places of four treatments: two levels of the examined factor by two combinations of the other factors.
-/// Treatment = 2 combination + level.
+/// Two levels of the examined factor by two combinations of the other factors make four treatments. Treatment
+/// = 2 combination + level.
 const std::vector<FactorPlace> places{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
 
 PairChoice choice(int participant, int first, int second, bool first_chosen) {
@@ -33,7 +33,8 @@ TEST(LevelPreferences, CountPairsThatDifferInTheFactorAlone) {
   EXPECT_EQ(found[0].k, 1) << "level 0, by the one";
   EXPECT_EQ(found[0].participants, 4);
   ASSERT_TRUE(found[0].shares);
-  // Shares .5, 0, 0, 0 against .5: mean .125, standard error .125, t = -3 with 3 degrees of freedom.
+  // The people's shares of .5, 0, 0, 0 against .5: mean .125, standard error .125, t = -3 with 3 degrees of
+  // freedom.
   EXPECT_DOUBLE_EQ(found[0].shares->mean, 0.125);
   EXPECT_NEAR(found[0].shares->t, -3, 1e-12);
   EXPECT_NEAR(*found[0].p(), 0.057669, 1e-6) << "R: 2 * pt(-3, 3)";
@@ -68,7 +69,7 @@ TEST(LevelPreferences, OfThreeLevelsAreCorrectedTogether) {
   EXPECT_DOUBLE_EQ(*found[0].p_holm, 3 * *found[0].p()) << "the smallest of three";
 }
 
-/// Person by treatment; NaN: not judged.
+/// Scores by person and treatment; NaN: not judged.
 ScoreTable table_of(const std::vector<std::vector<double>>& scores) {
   std::vector<MethodScore> all;
   for (std::size_t person = 0; person < scores.size(); ++person) {
@@ -89,10 +90,11 @@ TEST(LevelDifferences, AverageOverTheOtherFactorWithinEachParticipant) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].participants, 3u) << "the fourth lacks one of the four";
   ASSERT_TRUE(found[0].difference);
-  // -1.5, -1, -2: mean -1.5, standard error .5 / sqrt 3.
+  // The people's differences are -1.5, -1, -2: mean -1.5, standard error .5 / sqrt 3.
   EXPECT_DOUBLE_EQ(found[0].difference->mean, -1.5);
   EXPECT_NEAR(found[0].difference->t, -1.5 / (0.5 / std::sqrt(3)), 1e-12);
-  // For the other factor: (3 + 5 - 4 - 5) / 2, (2 + 4 - 4 - 4) / 2, (5 + 6 - 3 - 6) / 2.
+  // The people's differences for the other factor: (3 + 5 - 4 - 5) / 2, (2 + 4 - 4 - 4) / 2, (5 + 6 - 3 - 6)
+  // / 2.
   const std::vector<FactorPlace> other{{0, 0}, {0, 1}, {1, 0}, {1, 1}};
   EXPECT_NEAR(level_differences(table, other, 2, {})[0].difference->mean, (-0.5 - 1 + 1) / 3, 1e-12);
 }

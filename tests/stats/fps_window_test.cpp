@@ -9,7 +9,8 @@
 namespace {
 
 TEST(FpsMoments, FollowTheirDefinitions) {
-  // 1/dt = 10, 20, 40: mean 70/3, harmonic 3/0.175, population sd sqrt(1400/9).
+  // The rates are 10, 20, 40 frames/s: mean 70/3, harmonic mean 3/0.175, population standard deviation
+  // sqrt(1400/9).
   const std::vector<double> intervals{0.1, 0.05, 0.025};
   const auto moments = stats::fps_moments(intervals);
   EXPECT_EQ(moments.frames, 3u);

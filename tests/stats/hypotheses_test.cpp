@@ -20,7 +20,7 @@ using ::testing::SizeIs;
 
 constexpr double noise = 0.3;
 
-/// Means in the order LoRes, FovFluid, Ours, Ours-TSp, HiRes.
+/// `realism` and `sickness` are means in the order LoRes, FovFluid, Ours, Ours-TSp, HiRes.
 std::vector<Hypothesis> verdicts(const std::vector<double>& realism, const std::vector<double>& sickness,
                                  int n = 26, const std::string& untestable = "",
                                  const AnalysisPlan& plan = {}) {
@@ -209,7 +209,7 @@ TEST(Hypotheses, AFamilyOfEightKeepsItsLevelWhereNothingDiffers) {
 }
 
 TEST(Hypotheses, NonInferiorityKeepsItsLevelAtTheMargin) {
-  // The accelerated strategy is worse by exactly the margin.
+  // Ours-TSp is worse than Ours by exactly the margin.
   const double share =
       share_of_studies({4, 4, 4, 3.5, 4}, {1, 1, 1, 1.25, 1}, one_sided_throughout(),
                        [](const std::vector<Hypothesis>& all) { return all[2].confirmed_holm > 0; });
@@ -265,7 +265,7 @@ TEST(Hypotheses, UnanimousDifferencesAreTestedBySign) {
 }
 
 TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
-  // Ours equals FovFluid, HiRes differs from it by more than the margin, and Ours-TSp is below Ours by
+  // Ours equals FovFluid. HiRes differs from Ours by more than the margin. Ours-TSp is worse than Ours by
   // exactly the margin.
   const auto all = unanimous_verdicts({1, 2, 2, 1.5, 3}, {2, 1, 1, 1.25, 0}, 12);
   EXPECT_EQ(*all[0].tests[0].p, 1) << "no difference at all";
@@ -274,7 +274,7 @@ TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
   EXPECT_EQ(*all[1].tests[0].p, 1) << "beyond the margin";
   EXPECT_EQ(*all[2].tests[0].p, 1) << "at the margin";
   for (const auto& one : all) EXPECT_EQ(one.confirmed, 0);
-  // Five people cannot show anything with a sign test: its smallest p is 2^-4.
+  // Five people show nothing with a sign test: its smallest two-sided p is 2^-4.
   for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 5))
     EXPECT_EQ(one.status, HypothesisStatus::NotSupported) << one.status_text;
 }

@@ -17,7 +17,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Every third of 18 people leaves within the second n_*; each sees the methods in another order.
+/// 18 people judge five methods at two numbers of particles, in an order that rotates from person to person.
+/// Every third person leaves during the second half.
 std::vector<ScoreTable> tables_with_dropout(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -39,7 +40,7 @@ std::vector<ScoreTable> tables_with_dropout(std::uint64_t seed) {
           {test::sickness_scale(), sickness, 18, test::n_stars, test::methods}};
 }
 
-/// p of a test for another estimate, and whether the estimate points in the claimed direction.
+/// p of a test if its estimate were `estimate`, and whether that points in the claimed direction.
 std::pair<double, bool> p_at(const Hypothesis& claim, const HypothesisTest& test, double estimate) {
   const double up = test.score == "realism" ? 1 : -1, margin = test.margin.value_or(0),
                sides = claim.one_sided ? 1 : 2;

@@ -33,7 +33,7 @@ Image noise(int width, int height, std::uint32_t seed) {
   return out;
 }
 
-/// A slope plus noise of +-16.
+/// A slope plus noise of 0 to 31.
 Image rough(const Image& noise_image) {
   Image out = noise_image;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
@@ -122,7 +122,7 @@ TEST(Ssim, IsOneForEqualAndSymmetric) {
   EXPECT_LT(ab, 0.5);
 }
 
-/// One index by the definition: two-dimensional weights, variances around the mean.
+/// The SSIM index at (cx, cy) by its definition: two-dimensional weights, variances around the mean.
 double ssim_at(const Image& a, const Image& b, int cx, int cy) {
   const auto luma = [](const Image& image, int x, int y) {
     const std::uint8_t* p = image.rgb.data() + 3 * (y * image.width + x);
@@ -171,8 +171,8 @@ TEST(Ssim, EqualsItsDefinitionAtEveryPixel) {
   }
 }
 
-/// Gaussian means along rows, then along columns, of whole pictures: a plain version of ssim_map, which works
-/// in bands.
+/// Gaussian means of whole pictures, along rows and then along columns. ssim_map computes the same in bands
+/// of rows.
 std::vector<double> gaussian_means(const std::vector<double>& values, int width, int height) {
   std::vector<double> weights;
   double total = 0;
@@ -202,7 +202,7 @@ std::vector<double> gaussian_means(const std::vector<double>& values, int width,
 }
 
 TEST(Ssim, BandsOfRowsChangeNoValue) {
-  // Taller than several bands, and not a multiple of one.
+  // The pictures have several bands, and the last band is not full.
   constexpr int width = 47, height = 131;
   const Image a = rough(noise(width, height, 7));
   const Image b = rough(noise(width, height, 8));

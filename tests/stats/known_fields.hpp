@@ -11,7 +11,7 @@
 
 namespace oracle {
 
-/// Fails for each field of a case's answer that is neither in `compared` nor about the answer itself.
+/// Fails for each field of a case's answer that is neither in `compared`, nor status or reason, nor null.
 inline void expect_known_fields(const base::Json& c, std::initializer_list<std::string_view> compared) {
   for (const auto& [field, want] : c.at("expect").items()) {
     const bool about = field == "status" || field == "reason" || want.is_null();

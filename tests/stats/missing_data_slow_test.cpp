@@ -30,7 +30,8 @@ constexpr std::array<World, 4> worlds{{{"nobody leaves", Leaving::Nobody},
                                        {"after low answers", Leaving::ByAnswers},
                                        {"before low answers", Leaving::ByTheMissingAnswer}}};
 
-/// About 55 % leave before the end, and nobody before the second trial.
+/// Chance to leave before a trial from the second on. It is such that about 55 % of the people leave, except
+/// with Nobody.
 double chance_to_leave(Leaving leaving, double last, double next) {
   switch (leaving) {
     case Leaving::Nobody:

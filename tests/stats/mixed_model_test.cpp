@@ -33,7 +33,7 @@ ScoreTable table_of_study(const json& study) {
   return {test::realism_scale(), scores, participants, test::n_stars, test::methods};
 }
 
-/// Compares estimate, se, df, t, interval and p; values that may be zero are compared in units of se.
+/// Compares estimate, se, df, t, interval and p. Values that may be zero have tolerances in units of se.
 void expect_like(const MixedContrast& got, const json& want, const std::string& where) {
   const double se = want[1];
   EXPECT_NEAR(got.estimate, want[0], 2e-6 * se) << where;
@@ -95,7 +95,7 @@ TEST(MixedModel, CompleteDataGiveThePairedDifferences) {
   EXPECT_NEAR(model->difference(1, 4, 0, 0.95)->estimate, mean, 1e-9);
 }
 
-// A term that is a linear combination of others is left out, without effect on the rest.
+// A predictor that is a linear combination of others is left out, without effect on the other predictors.
 TEST(MixedModel, LeavesOutTermsThatOthersMakeUp) {
   std::vector<MethodScore> scores;
   std::mt19937_64 generator(3);

@@ -28,7 +28,7 @@ inline base::Json cases(const std::string& family) {
   return base::Json::parse(in).at("cases");
 }
 
-/// A number, "Inf" or "-Inf"; null = missing = NaN.
+/// A number, "Inf" or "-Inf"; null is a missing value and becomes NaN.
 inline double number(const base::Json& item) {
   if (item.is_null()) return std::numeric_limits<double>::quiet_NaN();
   if (item == "Inf") return std::numeric_limits<double>::infinity();
@@ -36,7 +36,7 @@ inline double number(const base::Json& item) {
   return item.get<double>();
 }
 
-/// null = missing = NaN.
+/// Numbers, with NaN for null.
 inline std::vector<double> numbers(const base::Json& list) {
   std::vector<double> out;
   for (const auto& item : list) out.push_back(number(item));
@@ -48,13 +48,13 @@ inline bool asks(const base::Json& expect, const std::string& field) {
   return expect.contains(field) && !expect.at(field).is_null();
 }
 
-/// Bound for a field: relative, and absolute in units of `scale` where the answer is zero.
+/// Bound for a field: relative to the expected value, or to `scale` where that value is zero.
 inline double bound(double expected, double rtol, double scale) {
   return rtol * (expected == 0 ? scale : std::abs(expected));
 }
 
-/// Compares `got` with one expected number, to `rtol` of it. If the answer is zero, or zero up to rounding of
-/// the program that computed it (1e-12 of `scale`, the size of the operands that were subtracted), to rtol of
+/// Compares `got` with one expected number, within rtol relative to it. If the number is zero, or zero but
+/// for rounding (below 1e-12 of `scale`, the size of the operands that were subtracted), within rtol of
 /// `scale`.
 inline void expect_number(const std::string& what, double got, const base::Json& expected, double rtol,
                           double scale = 1) {
@@ -68,8 +68,8 @@ inline void expect_number(const std::string& what, double got, const base::Json&
   EXPECT_LE(std::abs(got - want), allowed) << what << ": " << got << " instead of " << want;
 }
 
-/// expect_number for a field of a case. Does nothing if the pack does not ask for the field; fails if it does
-/// and there is no value. rtol is the case's own unless given.
+/// expect_number for a field of a case. Does nothing if the case has no such field. Fails if the case has the
+/// field and there is no value. rtol is the case's own unless given.
 inline void expect_field(const base::Json& c, const std::string& field, std::optional<double> got,
                          double scale = 1, std::optional<double> rtol = {}) {
   if (!asks(c.at("expect"), field)) return;

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// The plan of bundles that were frozen before plans had a decision rule.
+/// The plan of preregistration bundles from before plans had a decision rule.
 AnalysisPlan frozen_earlier() {
   AnalysisPlan plan;
   plan.decision = DecisionRule::Holm;
@@ -33,8 +33,8 @@ AnalysisPlan one_sided_throughout() {
   return plan;
 }
 
-/// H4 to H6 from ten pairs, each answered by 26 people; the arguments are the choices of the first method
-/// named.
+/// H4 to H6 from ten pairs, each answered by 26 people. Each number is how often the first method in its name
+/// was chosen.
 std::vector<Hypothesis> preferences(int tsp_over_ours, int ours_over_fov, int tsp_over_fov,
                                     int hires_over_ours, int hires_over_tsp,
                                     const std::string& untestable = "", const AnalysisPlan& plan = {}) {
@@ -109,7 +109,7 @@ TEST(PreferenceHypotheses, OneSidedWhereThePlanSaysSo) {
   EXPECT_EQ(earlier.status, HypothesisStatus::NotSupported) << "2 x .038 after Holm";
 }
 
-// A claim that needs all of its tests to succeed errs with at most alpha, uncorrected (Berger 1982).
+// A claim that needs all of its tests needs no correction: its error is at most alpha (Berger 1982).
 TEST(PreferenceHypotheses, AClaimThatNeedsAllItsTestsIsNotCorrected) {
   const auto h5 = preferences(13, 19, 19, 13, 13)[1];  // p = .029 twice
   EXPECT_EQ(h5.status, HypothesisStatus::Supported) << h5.status_text;

@@ -21,7 +21,7 @@ SsqAnswers all(int answer) {
   return answers;
 }
 
-/// How often a single item counts in a scale.
+/// How often one item counts in a scale.
 int times_in(SsqScale scale, int item) {
   SsqAnswers answers = all(0);
   answers[static_cast<std::size_t>(item - 1)] = 1;

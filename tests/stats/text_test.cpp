@@ -15,7 +15,8 @@ TEST(Text, PlainLinesAreUtf8WithoutControls) {
     EXPECT_TRUE(is_plain_line(good)) << good;
   const std::string_view nul("a\0b", 3);
   EXPECT_FALSE(is_plain_line(nul));
-  // A lone start, a lone continuation, overlong, a surrogate, beyond the last character, controls.
+  // A lone start byte, a lone continuation byte, overlong forms, a surrogate, a code above U+10FFFF, an
+  // invalid byte, control characters.
   for (const char* bad : {"\xC3", "\x80", "\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
                           "\xFF", "a\tb", "a\nb", "\x1b[31m", "\x7f", "\xC2\x85"})
     EXPECT_FALSE(is_plain_line(bad)) << bad;

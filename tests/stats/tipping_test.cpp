@@ -17,7 +17,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Ten people have both values; two lack the first, three the second, one both.
+/// Ten people have both values, two lack the first one, three lack the second one, one person lacks both.
 ScoreTable table_with_missing(double lift, ScoreScale scale) {
   std::vector<std::vector<double>> rows;
   for (int i = 0; i < 10; ++i) rows.push_back({3 + lift + 0.3 * (i % 4), 3 + 0.2 * (i % 3)});
@@ -40,7 +40,8 @@ Result<TippingPoint> tip(const ScoreTable& table) {
   return tipping_point_two_sided(table, 0, 0, 1, p.estimate, p.half);
 }
 
-/// The mean difference over all planned people, with missing values `worse` than expected.
+/// The mean difference over all planned people, if the method's missing values were worse than expected by
+/// `worse`.
 double filled_in(const ScoreTable& table, std::size_t method, double worse) {
   const auto x = table.column(0, 0), y = table.column(0, 1);
   const double expected = paired(table).estimate, sign = table.scale().higher_is_better ? -1 : 1;
@@ -119,7 +120,7 @@ TEST(TippingPoint, CountsThosePlannedForBoth) {
   EXPECT_EQ(got.b.missing, 1u);
 }
 
-// Equivalence needs both margins: missing answers of either method can end it.
+// Equivalence needs both margins, so missing answers of either method can reverse it.
 TEST(TippingPoint, ARangeWithTwoEndsCanBeLeftByBoth) {
   const auto table = table_with_missing(0, test::realism_scale());
   const double estimate = 0.1;

@@ -28,8 +28,8 @@ class Draws {
   std::uint64_t state_;
 };
 
-/// sqrt(n) times the largest distance between the values' distribution and the uniform one. Exceeds 1.95 with
-/// probability .001 if they are uniform.
+/// sqrt(n) times the largest distance between the distribution of n values and the uniform one. If the values
+/// are uniform, it exceeds 1.95 with probability .001.
 inline double distance(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());

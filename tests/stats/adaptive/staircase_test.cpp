@@ -74,7 +74,8 @@ TEST(Staircase, EachRuleConvergesToItsShare) {
     constexpr std::size_t trials = 4000;
     const auto positive = std::make_unique<bool[]>(trials);
     double x = rules.start, sum = 0;
-    // The pure replay is quadratic over a session; here blocks of 200 trials continue from the last stimulus.
+    // Replaying a session takes time quadratic in its trials. So each block of 200 trials is a session that
+    // begins at the last stimulus of the block before.
     for (std::size_t done = 0; done < trials; done += 200) {
       StaircaseRules block = rules;
       block.start = x;

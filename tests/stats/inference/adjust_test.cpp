@@ -24,7 +24,7 @@ const std::map<std::string, Adjustment> methods{{"bonferroni", Adjustment::Bonfe
                                                 {"BH", Adjustment::BenjaminiHochberg},
                                                 {"fdr", Adjustment::BenjaminiHochberg},
                                                 {"none", Adjustment::None}};
-/// Adjustments in the oracle's packs that the project does not implement.
+/// Adjustments in the reference answers that the project does not implement.
 const std::set<std::string> absent{"hochberg", "hommel", "BY"};
 
 TEST(Adjust, AgreesWithTheReferenceAnswers) {

@@ -20,7 +20,7 @@ using oracle::number;
 using stats::Alternative;
 using stats::binomial_test;
 
-/// Compares p-values relative to their size, however small they are.
+/// Scale of p-values: so small that they are compared relative to their size.
 constexpr double p_scale = 1e-290;
 
 Alternative side(const std::string& name) {
@@ -29,7 +29,7 @@ Alternative side(const std::string& name) {
   return Alternative::TwoSided;
 }
 
-/// The interval that a field such as "ci95_wilson" names.
+/// The interval of a method, which is named as in the reference answers.
 const std::array<double, 2>* interval(const stats::BinomialTest& test, const std::string& method) {
   if (method == "clopper_pearson") return &test.clopper_pearson;
   if (method == "wilson") return &test.wilson;
@@ -173,7 +173,8 @@ TEST(Binomial, NeverRejectsATrueNullTooOften) {
 }
 
 TEST(Binomial, PIsUniformOnceItsStepsAreFilledWithDraws) {
-  // P(X > k) + U P(X = k) is exactly uniform, but not with a wrong tail or mass.
+  // P(X > k) + U P(X = k), with U uniform on (0, 1), is exactly uniform. A wrong tail or mass would spoil
+  // that.
   uniformity::Draws draws(11);
   std::vector<double> values;
   for (int i = 0; i < 4000; ++i) {

@@ -56,7 +56,8 @@ void expect_strict(const json& c, const std::optional<stats::BcaInterval>& stric
   expect_pair(c, "bca_bootci", strict->ci_normal);
 }
 
-/// The library's own resamples agree to within 4 % of the interval's width (the pack's README).
+/// The library's own resamples reproduce the ends of the intervals within 4 % of their width, the tolerance
+/// of oracle/README.md.
 void expect_many_resamples(const json& c, const Values& x, const stats::Statistic& of, double confidence) {
   const auto got = bootstrap_interval(x, of, {.resamples = 50'000, .seed = 2, .confidence = confidence});
   ASSERT_TRUE(got) << got.reason();
@@ -200,8 +201,8 @@ TEST(BootstrapInterval, MissingValuesAreDroppedAndCounted) {
   EXPECT_EQ(got->bca.ci, bootstrap_interval(Values{1, 2, 4, 3, 6, 5}, stats::mean_statistic())->bca.ci);
 }
 
-// A bootstrap interval lies within the range of the values, which holds the centre with probability 1 - 2^(1
-// - n).
+// A bootstrap interval lies within the range of the n values. That range holds the centre of a symmetric
+// distribution with probability 1 - 2^(1 - n).
 TEST(BootstrapInterval, TooFewValuesForTheLevelAreRefusedInWords) {
   const Values x{1, 4, 2, 7, 3, 9};
   for (std::size_t n = 2; n <= 5; ++n) {

@@ -23,7 +23,7 @@ using stats::repeated_anova;
 using Values = std::vector<double>;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Compares p-values relative to their size, however small they are.
+/// Scale of p-values: so small that they are compared relative to their size.
 constexpr double p_scale = 1e-290;
 
 struct Table {

@@ -20,7 +20,7 @@ using json = base::Json;
 using Values = std::vector<double>;
 constexpr double eight_digits = 1e-8;
 
-/// Certified data sets of one class.
+/// The certified data sets of a class, such as "univariate".
 json certified(const std::string& kind) {
   std::ifstream in(oracle::folder() / "nist" / "certified.json");
   if (!in) throw std::runtime_error("cannot read certified.json of NIST");

@@ -101,7 +101,7 @@ TEST(Power, SidesMirrorAndAddUp) {
   }
 }
 
-/// Share of simulated studies in which both one-sided tests reject.
+/// Share of simulated studies in which both one-sided tests of equivalence reject.
 double simulated_tost(int n, const Equivalence& e, int studies) {
   uniformity::Draws draws(9);
   const double critical = stats::student_upper_quantile(e.alpha, n - 1);
@@ -176,8 +176,8 @@ TEST(BinomialPower, IsTheSumOverTheCountsThatAreSignificant) {
   EXPECT_EQ(*stats::binomial_power(6, 0.7)->k_critical_lower, 0);
 }
 
-// R 4.2.2: power.t.test(n = 26, power = .8, type = "paired", strict = TRUE, tol = 1e-14)$delta, and the root
-// of the power of binom.test's rejections over dbinom.
+// R 4.2.2: power.t.test(n = 26, power = .8, type = "paired", strict = TRUE, tol = 1e-14)$delta, and the
+// share at which a test that rejects where binom.test does has the power .8, by dbinom.
 TEST(Power, TheSmallestEffectThatIsFoundIsThatOfR) {
   EXPECT_NEAR(*stats::t_detectable(26, 0.8), 0.571704834713, 1e-9);
   EXPECT_NEAR(*stats::binomial_detectable(26, 0.8), 0.778848249382, 1e-10);

@@ -16,7 +16,7 @@ inline std::vector<double> normal(std::mt19937_64& random, std::size_t n, double
   return out;
 }
 
-/// Largest distance between the share of p-values below x and x itself.
+/// Largest distance between the share of p-values below x and x itself, over all x.
 inline double uniform_distance(std::vector<double> p) {
   std::sort(p.begin(), p.end());
   double largest = 0;

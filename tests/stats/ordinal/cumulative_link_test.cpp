@@ -74,12 +74,10 @@ stats::Result<Reported> fit_model(const std::string& model, const json& input) {
                   fit_cumulative_link_mixed(ratings, {}, people, link, points)->log_likelihood};
 }
 
-/// Tolerances of the oracle's README: clm 1e-5 or the case's own if that is tighter, clmm estimates 1e-3.
-/// Properties of the reference need three more:
-/// - its optimiser stops early, so that an estimate near zero is compared to 2e-4 standard errors;
-/// - a spread that would be zero but for that is compared absolutely;
-/// - its Laplace log-likelihoods are off by up to 1.3e-4, because they use the curvature of the last but one
-///   Newton step (TheReferencesLaplaceUsesAStaleCurvature proves it), and so are the ratios of two.
+/// Tolerances of oracle/README.md: clm 1e-5, or the case's own if that is tighter; clmm estimates 1e-3. The
+/// reference's optimiser stops early, so an estimate near zero is compared within 2e-4 standard errors, and a
+/// spread near zero absolutely. Its Laplace log-likelihoods and their ratios are off by up to 1.3e-4, because
+/// they use the curvature before the last Newton step (TheReferencesLaplaceUsesAStaleCurvature proves it).
 struct Tolerance {
   double estimate, log_likelihood, ratio, p;
 };
@@ -156,8 +154,9 @@ TEST(CumulativeLink, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// sum log P - u^2 / 2 of one participant's answers (u: standard normal), its slope and minus its second
-/// derivative, by finite differences of the explicit logistic distribution: independent of the library.
+/// sum log P - u^2 / 2 over one participant's answers, where u is the participant's standard normal effect.
+/// Also its slope and minus its second derivative by finite differences. They use the explicit logistic
+/// distribution, independently of the library.
 struct Person {
   std::vector<double> lower, upper;  ///< thresholds less the fixed location
 
@@ -180,8 +179,8 @@ struct Person {
   }
 };
 
-/// Laplace's approximation after `steps` Newton steps from 0, with the curvature at the end or, if stale, at
-/// the place before the last step.
+/// Laplace's approximation after `steps` Newton steps from 0. The curvature is that at the end or, if
+/// `stale`, that before the last step.
 double laplace(const std::vector<Person>& people, double sd, int steps, bool stale) {
   double sum = 0;
   for (const auto& person : people) {
@@ -218,8 +217,8 @@ std::vector<Person> people_of(const json& input, const json& at) {
   return out;
 }
 
-// The reason for the loose tolerance for Laplace: at the reference's own estimates, its log-likelihood is
-// reproduced to 1e-6 with a curvature one Newton step behind, but not with the right one.
+// The reason for the loose tolerance for Laplace: at the reference's own estimates, a curvature from one
+// Newton step before the last reproduces its log-likelihood to 1e-6, and the right curvature does not.
 TEST(CumulativeLink, TheReferencesLaplaceUsesAStaleCurvature) {
   for (const auto& item : oracle::cases("ordinal")) {
     if (item.at("expect").at("status") != "ok" || !item["expect"].contains("clmm_logit_laplace")) continue;
@@ -366,7 +365,7 @@ TEST(CumulativeLink, RefusesWithANamedReason) {
                  two);
   expect_refused("infinite", {1, 2, 3, 4, 5, 4},
                  {{"x", {1, 2, 3, 4, 5, std::numeric_limits<double>::infinity()}}}, two);
-  // Complete separation, one group entirely at the end (quasi-separation), and a step without overlap.
+  // Complete separation, a group with only the highest score, and scores that rise with x without overlap.
   expect_refused("separation", {1, 1, 1, 2, 2, 2}, {{"x", {0, 0, 0, 1, 1, 1}}}, two);
   expect_refused("separation", {1, 3, 2, 3, 3, 3}, {{"x", {0, 0, 0, 1, 1, 1}}}, two);
   expect_refused("by x", {1, 1, 2, 2, 3, 3}, {{"x", {0, 0, 1, 1, 2, 2}}, {"z", {0, 1, 0, 1, 0, 1}}}, two);

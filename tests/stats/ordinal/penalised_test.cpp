@@ -40,7 +40,7 @@ struct Truth {
   std::vector<double> thresholds, effects;
 };
 
-/// Most answers are 0, as for sickness, and tied.
+/// With the first three truths most answers are 0, as for sickness.
 const Truth no_effect{"mostly zero, no effect", {1.5, 3, 4.5}, {0, 0, 0, 0, 0}};
 const Truth one_worse{"mostly zero, effects", {1.5, 3, 4.5}, {0, 2, 1, 0, 0}};
 const Truth rare{"rarely not zero, effects", {2.5, 4, 5.5}, {0, 2, 1, 0, 0}};
@@ -64,7 +64,8 @@ Study simulate(const Truth& truth, int people, std::mt19937_64& random) {
   return out;
 }
 
-/// The first simulated study whose ratings are separated if `separated`, else not.
+/// The first simulated study of six people whose ratings are separated, or, if not `separated`, the first one
+/// that can be fitted without a penalty.
 Study first_study(const Truth& truth, bool separated) {
   std::mt19937_64 random(1);
   for (;;) {
@@ -75,7 +76,8 @@ Study first_study(const Truth& truth, bool separated) {
 }
 
 /// The log-likelihood by the trapezoidal rule over each person's effect, from the explicit logistic
-/// distribution, plus the log of exp(b / 2) / (1 + exp(b)) over its value at b = 0, summed over the effects.
+/// distribution. Plus the penalty: for each effect b, the log of exp(b / 2) / (1 + exp(b)) less its value at
+/// b = 0.
 double penalised_log_likelihood(const Study& study, const MixedOrdinalFit& at) {
   const auto F = [](double x) { return 1 / (1 + std::exp(-x)); };
   constexpr double step = 0.02, end = 9;

@@ -22,9 +22,9 @@ using stats::BradleyTerryMethod;
 using stats::Connection;
 using Values = std::vector<double>;
 
-/// Compares p-values relative to their size, however small they are.
+/// Scale of p-values: so small that they are compared relative to their size.
 constexpr double p_scale = 1e-290;
-/// Precision of brglm2, from the pack's README.
+/// Precision of brglm2, from oracle/README.md.
 constexpr double firth_rtol = 1e-5;
 
 struct Table {
@@ -129,7 +129,7 @@ TEST(BradleyTerry, TwoItemsAreOneProportion) {
   EXPECT_NEAR(all->pairs[0].difference, std::log(26.5 / 0.5), 1e-10);
 }
 
-/// Answers of n people to every pair; strengths in logits.
+/// Answers of n people to every pair of methods whose strengths are `lambda`, in logits.
 Values simulate(const Values& lambda, int n, uniformity::Draws& draws) {
   const std::size_t items = lambda.size();
   Values wins(items * items, 0.0);
@@ -217,7 +217,7 @@ TEST(Connection, NamesWhoKeepsTheStrengthsFromBeingFinite) {
   const auto of = [](const Values& wins, int items) { return stats::connection(wins, items); };
   EXPECT_EQ(of({0, 1, 1, 0}, 2).connection, Connection::Strong);
   EXPECT_EQ(of({0, 1, 1, 0}, 2).reason, "");
-  // A cycle of three, each beaten by one other.
+  // A cycle: each of three items is beaten by one other.
   EXPECT_EQ(of({0, 1, 0, 0, 0, 1, 1, 0, 0}, 3).connection, Connection::Strong);
   const auto winner = of({0, 5, 5, 0, 0, 2, 0, 3, 0}, 3);
   EXPECT_EQ(winner.connection, Connection::Separated);

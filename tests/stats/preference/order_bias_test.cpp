@@ -40,7 +40,8 @@ std::vector<Comparison> session(int n, const std::vector<double>& lambda, double
 const std::vector<double> strengths{-0.6, -0.3, 0.1, 0.3, 0.5};
 
 TEST(OrderBias, TwoItemsHaveAClosedForm) {
-  // Chosen when shown first: 15 of 20 and 12 of 20. logit = +-lambda + pull, so the pull is the mean logit.
+  // Shown first, item 0 is chosen 15 of 20 times and item 1 12 of 20 times. The logits are lambda + pull and
+  // -lambda + pull, so the pull is their mean.
   std::vector<Comparison> trials;
   for (int i = 0; i < 20; ++i) {
     trials.push_back({0, 1, i < 15, 1});

@@ -69,7 +69,8 @@ TEST(PeopleErrors, AreThoseOfTheSandwichInR) {
   EXPECT_EQ(pairs, 29);
 }
 
-/// Everyone judges all pairs of three items in three scenes, with a taste of their own around (0, 0, 0).
+/// Everyone judges all pairs of three items in three scenes. A person's strengths are normal about (0, 0, 0)
+/// with the SD `taste`.
 std::vector<Comparison> people_with_tastes(int people, double taste, uniformity::Draws& draws) {
   std::vector<Comparison> out;
   for (int person = 0; person < people; ++person) {
@@ -120,7 +121,7 @@ TEST(PeopleErrors, StepBackWithAReasonWherePeopleDoNotBearThem) {
   EXPECT_NE(alike->why_independent.find("alike"), std::string::npos) << alike->why_independent;
   EXPECT_GT(alike->pairs[0].se, 0.3);
   EXPECT_EQ(alike->pairs[0].se, alike->pairs[0].se_independent);
-  // With an item that always wins, Firth's estimate keeps its own errors.
+  // With an item that always wins, Firth's estimate has standard errors that take answers as independent.
   std::vector<Comparison> always;
   for (int person = 0; person < 8; ++person)
     for (const auto& [a, b, won] : {std::tuple{0, 1, true}, {0, 2, true}, {1, 2, person % 2 == 0}})

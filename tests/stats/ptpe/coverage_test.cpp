@@ -1,6 +1,6 @@
-/// 1,000 simulated pilots of the actual protocol (16 participants, 21 settings, one rating each) under
-/// several truths: coverage of the intervals of a and b, and scatter of the estimates. docs/statistics.md has
-/// the printed figures.
+/// Simulated pilots of the actual protocol (16 participants, 21 settings, one rating each) under several
+/// truths: coverage of the intervals of a and b, and scatter of the estimates. docs/statistics.md has the
+/// printed figures.
 
 #include <gtest/gtest.h>
 
@@ -156,7 +156,8 @@ TEST_P(PtpeCoverageSlow, OrdinalEstimateBesideTheOthers) {
   EXPECT_LT(ordinal.sd_b, 1.3 * direct.sd_b);
 }
 
-// The paper's truth, and five others over the grid; at a = 31, b = 0.035 the curve leaves it at delta = 14.
+// The paper's truth and five others. At a = 31, b = 0.035 the curve leaves the settings, which end at 50
+// frames/s, at delta = 14.
 INSTANTIATE_TEST_SUITE_P(Truths, PtpeCoverageSlow,
                          testing::Values(Truth{23.68, 0.02}, Truth{20, 0.03}, Truth{28, 0.01},
                                          Truth{35, 0.015}, Truth{27, 0.028}, Truth{31, 0.035}));

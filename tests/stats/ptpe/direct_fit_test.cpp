@@ -16,7 +16,7 @@ namespace {
 
 using stats::PilotObservation;
 
-/// Scores of the model itself, with an effect of each participant and noise.
+/// Scores of the fit `truth`, with an effect of each participant and noise.
 std::vector<PilotObservation> surface(const stats::DirectFit& truth, int participants, double person_sd,
                                       double noise, std::uint64_t seed = 1) {
   std::mt19937_64 engine(seed);
@@ -124,7 +124,8 @@ TEST(DirectFit, OrderOfRowsAndUnitsOfTheFrameRateFollowThrough) {
 }
 
 TEST(DirectFit, ChoosesTheLineOnWhichScoresRise) {
-  // k + q u changes sign at u = -k/q: the scores also cross the level there, but fall.
+  // The scores are 4 + u (k + q u), with u = log mu - log mu(delta). They are 4 also at u = -k / q, but fall
+  // there.
   const auto truth = model(30, 0.01, 1, 0, 1.2);
   const auto fit = stats::DirectModel(surface(truth, 2, 0, 0), 4).fit();
   ASSERT_TRUE(fit) << fit.reason();
@@ -223,7 +224,7 @@ TEST(Curve, JackknifeOfAMeanIsItsStandardError) {
 }
 
 // 600 pilots of a straight surface: the test's p are uniform (Kolmogorov-Smirnov, 1 % point). For a bent
-// surface the test finds the bend.
+// surface the test rejects.
 TEST(LackOfFit, HoldsItsLevelAndFindsABend) {
   constexpr int studies = 600;
   std::vector<double> p;

@@ -36,9 +36,9 @@ void expect_number(const json& got, const json& expected, double rtol, double sc
   EXPECT_NEAR(got.get<double>(), expected.get<double>(), oracle::bound(expected, rtol, scale)) << where;
 }
 
-/// Compares the ends of profile intervals, which are exact roots, to 1e-6. For a of the case x_offset the
-/// pack still has the value of R's spline, at which the least sum of squares misses its limit by 1e-3; at
-/// this library's end it meets the limit to 2e-13.
+/// Compares the ends of profile intervals, which are exact roots, within 1e-6. For a of the case x_offset the
+/// reference has the value of R's spline, at which the least sum of squares misses its limit by 1e-3. At this
+/// library's end the sum meets the limit within 2e-13.
 void expect_profile(const json& got, const json& expected, const std::string& key, const std::string& where) {
   if (expected[0].is_null() && expected[1].is_null()) return;
   ASSERT_TRUE(got.contains(key)) << where;
@@ -94,7 +94,8 @@ TEST(ExponentialFit, AgreesWithTheReferenceAnswers) {
   }
 }
 
-// With a or b held at an end of its profile, the least sum of squares is rss (1 + t^2 / df).
+// With a or b fixed at an end of its profile interval, the least sum of squares is rss (1 + t^2 / df). t is
+// the .975 quantile of Student's distribution with df = 6.
 TEST(ExponentialFit, ProfileEndsLieOnTheLimit) {
   const std::vector<double> x{0, 1, 2, 3, 4, 5, 6, 7}, y{0.4, 0.1, 1.2, 0.7, 2.1, 1.6, 3.9, 5.2};
   const auto fit = fit_exponential(x, y);

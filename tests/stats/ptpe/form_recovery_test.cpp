@@ -40,8 +40,8 @@ struct Sizes {
   double rejected = 0, written = 0, written_before = 0;
 };
 
-/// Shares of pilots. written: all rules allow a file; written_before: all rules except the test of the form
-/// do.
+/// Shares of pilots. rejected: by the test of the form. written: all rules allow a file. written_before: all
+/// rules but the test of the form allow it.
 Sizes sizes_of(const Population& population, int people) {
   std::vector<char> rejected(pilots()), written(pilots()), before(pilots());
 #pragma omp parallel for schedule(dynamic)

@@ -20,7 +20,8 @@ stats::DirectEstimate estimate(const surfaces::Population& population, int peopl
   return stats::estimate_direct(table.observations(stats::PilotMean::Harmonic), 4, {0});
 }
 
-/// Unrounded scores of a quadratic surface about a curve of the family, with differences between people.
+/// Unrounded scores of a quadratic surface about the curve log mu = log 26 + 0.02 delta + c (e^2 - 1/2), e =
+/// (delta - 10) / 10, with differences between people.
 std::vector<stats::PilotObservation> on_the_family(double c, int people) {
   std::vector<stats::PilotObservation> out;
   for (int p = 0; p < people; ++p) {

@@ -16,7 +16,7 @@ namespace {
 using stats::OrdinalPilotFit;
 using stats::PilotMean;
 
-/// The population's mean score at u = 0.
+/// The population's mean score on the fitted curve.
 double mean_on_the_curve(const OrdinalPilotFit& fit) {
   const double s = std::sqrt(1 + fit.sd_participant * fit.sd_participant);
   double mean = fit.levels[0];

@@ -1,5 +1,5 @@
 /// Results of fit-ptpe for whole pilots against R (tests/stats/r/pilot_form.R): the direct estimate, the band
-/// of the solver's file, the form of the curve, slopes within people and drift.
+/// of the solver's file, the test of the curve's form, slopes within people and drift.
 
 #include <gtest/gtest.h>
 

@@ -73,8 +73,8 @@ TEST(PilotPeople, ASlopeIsOfOnePersonWithinStandardDeviations) {
   for (const auto& [mu, delta, score] : given) ratings.push_back({3, mu, delta, mu, mu, delta, score, 0});
   const auto people = stats::pilot_people(ratings, 0.95);
   ASSERT_EQ(people.slopes.size(), 1u);
-  // x, standardised log mu, is -1, 0, 1 at either delta. The sums of x y are 3 and 4, so the slope is 7 / 4,
-  // and the residual sum of squares is sum y^2 - 7^2 / 4, with y about its mean at each delta.
+  // x, log mu standardised, is -1, 0, 1 at both delta. With y about its mean at each delta, the sums of x y
+  // are 3 and 4. So the slope is 7 / 4 and the residual sum of squares is sum y^2 - 7^2 / 4.
   const double slope = 7.0 / 4, yy = 14.0 / 3 + 26.0 / 3, rest = yy - slope * 7;
   EXPECT_NEAR(people.slopes[0].slope, slope, 1e-12);
   EXPECT_EQ(people.slopes[0].df, 3);

@@ -21,7 +21,7 @@ using stats::ContourPoint;
 using stats::PilotRating;
 using stats::ScoreGrid;
 
-/// Reads participant,fps_mean,fps_sd,rating; realised = nominal.
+/// Reads columns participant, fps_mean, fps_sd, rating. The realised moments are the nominal ones.
 std::vector<PilotRating> read_csv(const std::string& name) {
   std::ifstream in(oracle::folder() / name);
   std::vector<PilotRating> ratings;
@@ -101,7 +101,7 @@ void expect_straight(const json& item, const std::vector<PilotRating>& ratings) 
   oracle::expect_field(item, "ols_level4_b", fit->curve.b);
 }
 
-/// Tolerance of the README for thresholds and coefficients: 1e-5.
+/// oracle/README.md has the tolerance of thresholds and coefficients: 1e-5.
 void expect_cumulative_link(const json& item, const std::vector<PilotRating>& ratings) {
   if (!oracle::asks(item.at("expect"), "clm_probit")) return;
   const auto& expect = item["expect"]["clm_probit"];
@@ -183,7 +183,8 @@ TEST(Pilot, ReturnsTheCurveThatAnExactSurfaceHas) {
   const stats::PilotTable table(plane(24, 0.02));
   const auto fit = stats::estimate_contour(table.grid(stats::PilotMean::Harmonic), 4);
   ASSERT_TRUE(fit) << fit.reason();
-  // Bilinear interpolation is exact in mu here; over 5 frames/s of delta the curve bends by 0.03 frames/s.
+  // The scores are linear in mu, so bilinear interpolation is exact in mu. Over 5 frames/s of delta the curve
+  // differs from a straight line by 0.03 frames/s.
   EXPECT_NEAR(fit->a, 24, 0.05);
   EXPECT_NEAR(fit->b, 0.02, 2e-4);
 }
@@ -236,7 +237,7 @@ TEST(Pilot, LeavesCellsWithoutRatingsOut) {
   std::erase_if(ratings, [](const PilotRating& r) { return r.mu == 20 && r.delta == 10; });
   const auto grid = stats::PilotTable(ratings).grid(stats::PilotMean::Harmonic);
   const auto contour = stats::column_crossings(grid, 4, stats::contour_lines(grid));
-  // The contour is below row 30 until delta = 11.2, so lines 6 to 11 lose it.
+  // The contour is below the row of 30 frames/s until delta = 11.2, so lines 6 to 11 do not cross it.
   for (const auto& point : contour.points) EXPECT_TRUE(point.delta <= 5 || point.delta >= 12) << point.delta;
   EXPECT_EQ(contour.crossed, 15);
 }

@@ -28,7 +28,7 @@ constexpr double widest = 0.35;         // the default of vip-stats fit-ptpe --m
 
 /// An estimator's result for one pilot.
 struct One {
-  bool given = false;  ///< it has an interval and no doubts, so that a file would be written
+  bool given = false;  ///< it has an interval and no doubts, so its file is written
   double a = 0, b = 0;
   bool holds_a = false, holds_b = false;
 };
@@ -119,7 +119,7 @@ void recover(const Kind& kind, int pilots) {
       std::printf(" | %+.2f, %+.4f (%.2f, %.4f)", row.bias_a, row.bias_b, row.error_a, row.error_b);
     few ? std::printf(" | ") : std::printf(" | %.2f, %.2f", row.holds_a, row.holds_b);
     if (e > 0 || few) continue;
-    // Bounds for the solver's estimate, less two and a half Monte-Carlo standard errors.
+    // Bounds for the solver's estimate, wider by two and a half Monte-Carlo standard errors.
     const double error = 2.5 * std::sqrt(0.08 * 0.92 / row.given);
     EXPECT_GE(row.holds_a, 0.92 - error) << population.name << ", " << kind.participants;
     EXPECT_GE(row.holds_b, 0.92 - error) << population.name << ", " << kind.participants;

@@ -19,7 +19,7 @@ std::vector<stats::PilotObservation> observed(const std::vector<stats::PilotRati
   return stats::PilotTable(ratings).observations(stats::PilotMean::Harmonic);
 }
 
-/// log mu(delta) less the truth, over its standard error.
+/// log mu(delta) less that of the truth, in standard errors.
 double standard_errors_off(const stats::CurveSpread& curve, double delta, double truth) {
   const auto point = curve.band(delta);
   const double t = stats::student_quantile(0.975, curve.participants - 1);

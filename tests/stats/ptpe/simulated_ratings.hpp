@@ -20,7 +20,7 @@ inline void PrintTo(const Truth& truth, std::ostream* out) {
   *out << "a = " << truth.a << ", b = " << truth.b;
 }
 
-/// The paper's 21 settings, each rated once by each participant; realised = nominal.
+/// The paper's 21 settings, each rated once by each participant. The realised moments are the nominal ones.
 inline std::vector<stats::PilotRating> pilot(const Truth& truth, int participants, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;

@@ -1,6 +1,6 @@
 #pragma once
-/// Simulated populations whose ratings violate every estimator's assumptions, and their mean's contour by
-/// brute force.
+/// Simulated populations of raters, some outside every estimator's model, and the contour of their mean score
+/// by brute force.
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ struct Population {
 
 inline double exponential(double a, double b, double delta) { return a * std::exp(b * delta); }
 
-/// A threshold frame rate at each standard deviation.
+/// A threshold of the mean frame rate as a function of its standard deviation.
 using Threshold = std::function<double(double delta)>;
 
 /// The parametric observer (libstudy/observer/ptpe_observer.hpp) with any threshold.
@@ -58,7 +58,7 @@ inline const Threshold saturating = [](double delta) { return 24 + 14 * (1 - std
 inline const Threshold hinged = [](double delta) { return 24 + 1.2 * std::max(0.0, delta - 10); };
 inline const Threshold linear = [](double delta) { return 24 + 0.6 * delta; };
 
-/// Surfaces outside every estimator's family, about a = 23.68, b = 0.02.
+/// Surfaces outside every estimator's model, most of them about a = 23.68, b = 0.02.
 inline std::vector<Population> strange() {
   constexpr double a = 23.68, b = 0.02;
   const auto tau = [](double mu, double delta) { return mu - exponential(a, b, delta); };
@@ -113,7 +113,7 @@ inline std::vector<stats::PilotRating> pilot(const Population& population, int p
   return ratings;
 }
 
-/// Mean score of the population at one setting: a Halton sequence over people, exact over their noise.
+/// Mean score of the population at one setting: over people by a Halton sequence, over their noise exactly.
 inline double mean_score(const Population& population, double mu, double delta) {
   constexpr int people = 512;
   const auto radical_inverse = [](int i, int base) {
@@ -136,13 +136,14 @@ inline double mean_score(const Population& population, double mu, double delta) 
   return sum / people;
 }
 
-/// The threshold at which the population's mean score is the level.
+/// The mean frame rate at which the population's mean score is `level`.
 inline double mean_threshold(const Population& population, double delta) {
   return stats::find_root([&](double at) { return mean_score(population, at, delta) - level; }, 2, 200);
 }
 
-/// The population mean's contour at the standard deviations shown, and the exponential nearest to it (least
-/// squares of log mu) over those at which it runs through the frame rates shown.
+/// The contour of the population's mean score at the pilot's standard deviations. Also the exponential a
+/// exp(b delta) nearest to it by least squares of log mu, over those standard deviations at which the contour
+/// lies within the pilot's frame rates.
 struct Truth {
   std::vector<double> delta, mu;
   double a = 0, b = 0;

@@ -22,7 +22,8 @@ study <- function(people, items, taste, answered) {
   rows
 }
 
-# Columns of the strengths, the first item at 0; then the first interval, then its drift about the mean place.
+# Columns: the strengths with the first item at 0, then the bias to the first interval, then its drift about
+# the mean position.
 design <- function(rows, items, terms) {
   x <- matrix(0, nrow(rows), items)
   x[cbind(seq_len(nrow(rows)), rows[, 2] + 1)] <- 1
@@ -58,7 +59,7 @@ case <- function(people, items, taste, answered) {
   model <- fitted_with(rows, items, 0)
   df <- length(unique(rows[, 1])) - 1
   k <- items - 1
-  # To strengths that sum to 0, and to differences of all pairs.
+  # Matrices from the coefficients to strengths that sum to 0, and to the differences of all pairs.
   centre <- rbind(0, diag(k)) - matrix(1 / items, items, k)
   pairs <- combn(items, 2)
   contrast <- t(apply(pairs, 2, function(p) { v <- numeric(items); v[p] <- c(1, -1); v[-1] }))

@@ -56,15 +56,15 @@ reached <- function(rows) {
 }
 near_enough <- function(rows) rows[log(rows$mu) <= log(2.46) + along(direct_fit(rows), rows$delta), ]
 
-# Mean of a rating that is normal about x, rounded, and held within 1 to 7. This function S has S(4) = 4.
+# Mean of a rating that is normal about x, rounded, and limited to 1 to 7. This function S has S(4) = 4.
 held_mean <- function(x, sd) 1 + Reduce(`+`, lapply(1:6, function(j) pnorm((x - j - 0.5) / sd)))
 error_sd <- function(rows) {
   settings <- Filter(function(own) mean(own) >= 2.5 && mean(own) <= 5.5, split(rows$score, paste(rows$mu, rows$delta)))
   squares <- sum(sapply(settings, function(own) sum((own - mean(own))^2)))
   sqrt(max(squares / sum(lengths(settings) - 1) - 1 / 12, 0.1))
 }
-# The surface of stats/ptpe/scale_end_fit.hpp. Its u is the difference of roots of frames/s here, and has a factor more
-# there, which only scales k.
+# The surface of stats/ptpe/scale_end_fit.hpp. Here u is the difference of roots of frames/s. There it has a
+# factor more, which only scales k.
 scale_end_fit <- function(rows, sd, start) {
   rows$d <- rows$delta / 10
   coef(nls(score ~ held_mean(4 + (sqrt(mu) - exp((l + b * d) / 2)) * (k + m * d + q * (sqrt(mu) - exp((l + b * d) / 2))), sd),
@@ -98,7 +98,7 @@ estimates <- function(rows, people) {
           list_of(setdiff(deviations, kept$delta)), list_of(num(exp(band$low))), list_of(num(exp(band$high))))
 }
 
-# The form about 26 exp(0.02 delta).
+# The test of the form about 26 exp(0.02 delta).
 form_of <- function(rows, people) {
   curve <- 26 * exp(0.02 * rows$delta)
   near <- rows[curve <= 50 & rows$mu * 2.46 >= curve, ]

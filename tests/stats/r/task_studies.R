@@ -6,8 +6,9 @@
 set.seed(20)
 source("task_studies_lib.R")
 
-# Reports of Task 1: one scene at each n_*, the methods in any order. Who drops out leaves the rest unanswered.
-# `shift` moves realism towards the end of the scale, `coarse` leaves three scores, `gaps` are reports left out anywhere.
+# Reports of Task 1: one scene at each n_*, the methods in any order. A person who drops out leaves the later
+# reports unanswered. `shift` moves realism towards the end of the scale, `coarse` leaves three scores, `gaps`
+# is the chance that a report is left out.
 task1_answers <- function(people, visits, dropout, equal, shift = 0, coarse = FALSE, gaps = 0) {
   rows <- NULL
   quality <- c(-1.4, -0.5, 0.4, 0.7, 0.5)
@@ -185,7 +186,7 @@ pair_counts <- function(rows, a, b) {
        max_per_participant = if (nrow(own)) max(table(own$person)) else 0)
 }
 
-# Of each person who was shown the pair: how often they chose a, of how many answers.
+# For each person who was shown the pair: how often they chose a, and how many answers they gave.
 person_choices <- function(rows, a, b) {
   own <- rows[(rows$first == a & rows$second == b) | (rows$first == b & rows$second == a), ]
   chose_a <- (own$chosen == 1) == (own$first == a)
@@ -222,7 +223,7 @@ one_pair <- function(rows, a, b) {
               wilson = as.vector(suppressWarnings(prop.test(count$k, count$n, correct = FALSE))$conf.int), cohen_g = count$k / count$n - 0.5))
 }
 
-# Circular triads of one person: triples in which each wins once.
+# Circular triads of one person: triples in which each method wins once.
 circular <- function(own) {
   wins <- matrix(0, 5, 5)
   for (i in seq_len(nrow(own))) {

@@ -1,4 +1,5 @@
-# What task_studies.R is made of: JSON, scores and tests by R's own functions, in the shape of vip-stats' results.
+# Functions of task_studies.R: JSON, scores and tests by R's own functions, in the structure of vip-stats'
+# results.
 
 methods <- c("LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes")
 n_stars <- c("16k", "32k")
@@ -36,7 +37,7 @@ shapiro <- function(x) {
   if (is.null(test)) NULL else list(w = unname(test$statistic), p = test$p.value)
 }
 
-# The ncp at which t is the lower and the upper 2.5 % point.
+# The noncentrality parameters at which t is the upper and the lower 2.5 % point, times `scale`.
 effect_ci <- function(t, df, scale) {
   at <- function(p) uniroot(function(ncp) pt(t, df, ncp) - p, c(-37, 37), tol = 1e-13)$root
   c(at(1 - alpha / 2), at(alpha / 2)) * scale
