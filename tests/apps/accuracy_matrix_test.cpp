@@ -40,9 +40,9 @@ TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
           s[sim::SolverKnob::Levels]);
   }
   EXPECT_EQ(levels.size(), 36u) << "4 sizes, 3 numbers of projections, 3 of substeps";
-  // Each combination occurs with one number of levels. At the usual size and number of projections a second
-  // one may occur, from the settings that change a single knob. Each number of levels has about a quarter of
-  // the other 33 combinations.
+  // Each combination of size, projections and substeps occurs with one number of levels. At the usual size
+  // and number of projections a second number of levels may occur, from the settings that change a single
+  // knob. Each number of levels has about a quarter of the other 33 combinations.
   for (const auto& [combination, found] : levels) {
     const bool turned_alone = combination[0] == 4096 && combination[1] == 4;
     EXPECT_LE(found.size(), turned_alone ? 2u : 1u);

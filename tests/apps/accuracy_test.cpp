@@ -67,7 +67,8 @@ study::StoredCell stored(const sim::SolverSetting& setting, int seed, const stud
 }
 
 /// A made-up sweep: a reference, HiRes with usual settings, and HiRes with two other numbers of projections.
-/// The fronts of the two reference runs differ by 0.01 m, 0.1 % of a tank of 10 m: the floor of the errors.
+/// The fronts of the two runs of the reference differ by 0.01 m, 0.1 % of a tank of 10 m. No smaller error
+/// can be measured.
 std::vector<study::StoredCell> small_sweep() {
   const auto reference = study::reference_setting("SingleDam", 512);
   const auto usual = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
@@ -280,8 +281,8 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
   refused("time,ms\n" + std::string(200, '1'), "not a sweep file");
   refused(sound.substr(0, 50), "not a sweep file");
   auto foreign = sound, newer = sound;
-  foreign[68] = 'X';  // application_id
-  newer[63] = 9;      // user_version
+  foreign[68] = 'X';  // a byte of application_id
+  newer[63] = 9;      // the last byte of user_version
   auto older = sound;
   older[63] = 1;
   refused(older, "older program (schema 1");

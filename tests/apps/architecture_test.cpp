@@ -59,7 +59,7 @@ bool begins(const std::string& text, const std::vector<std::string>& starts) {
   return false;
 }
 
-/// Includes that start with `what` are allowed only in files that start with `allowed_from`.
+/// Paths in includes that start with `what` are allowed only in files whose paths start with `allowed_from`.
 struct Rule {
   std::vector<std::string> what;
   std::vector<std::string> allowed_from;
@@ -71,7 +71,8 @@ const std::vector<Rule> rules{
     {{"apps/stats/"}, {"apps/stats/"}},
     {{"apps/study/"}, {"apps/study/"}},
     {{"apps/view/"}, {"apps/view/"}},
-    // The parts of libstudy that may use libsim. All other parts know only display/stimulus.hpp.
+    // The parts of libstudy that may use libsim. All other parts of libstudy include only
+    // display/stimulus.hpp.
     {{"libsim/"},
      {"apps/", "libsim/", "libstudy/analysis/", "libstudy/headset/", "libstudy/pages/window/",
       "libstudy/runner/", "libstudy/stimulus/", "libstudy/sweep/"}},

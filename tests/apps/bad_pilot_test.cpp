@@ -1,4 +1,5 @@
-/// Pilots that must not steer a solver: each is refused with its reason, and nothing is written.
+/// Pilots that must not steer a solver: vip-stats fit-ptpe refuses each with its reason, and writes no file
+/// for a solver. With --force it writes a file for some of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -77,7 +78,7 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     EXPECT_EQ(refused.out.find("not for a solver  ") != std::string::npos, bad.forced);
     for (const char* name : {"ptpe.toml", "ptpe.toml.history.jsonl", "heat.svg"})
       EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
-    // --json still has the numbers, together with the reason.
+    // The file of --json has the numbers, together with the reason for the refusal.
     const auto json = base::Json::parse(base::read_file(folder / "fit.json", 1 << 24));
     if (bad.forced) {
       EXPECT_FALSE(json.at("solver_file").at("refused").empty());
@@ -90,7 +91,8 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     const std::string report = base::read_file(page, 1 << 24);
     EXPECT_THAT(report, testing::Not(HasSubstr("For the solver, at level")));
     EXPECT_EQ(report.find("Not for a solver, at level") != std::string::npos, bad.forced);
-    // Scores that rise evenly in mu, not in log mu, may contradict the exponential as well.
+    // --accept-form is needed too: the test of the form may reject scores that rise evenly in mu, not in log
+    // mu.
     EXPECT_EQ(apps::test::run_shell(fit + " --force --accept-form").exit_code, bad.forced ? 0 : 1);
     EXPECT_EQ(std::filesystem::exists(folder / "ptpe.toml"), bad.forced);
   }

@@ -127,7 +127,7 @@ TEST(BakeOrder, WhatIsWantedDepartsInNothing) {
   EXPECT_THAT(study::view_departures(study::header_of(order()), study::header_of(order())), IsEmpty());
 }
 
-/// Differences of a bake whose order was changed by `change` from the unchanged order.
+/// Differences between a bake whose order was changed by `change` and the unchanged order.
 template <typename Change>
 std::string departures_after(const Change& change, bool view = false) {
   study::BakeOrder other = order();
@@ -187,7 +187,7 @@ TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
   EXPECT_EQ(study::header_of(other).scene_name, "Float");
 }
 
-/// A bake holds its scene's meshes, so it needs no file beside it.
+/// A bake has its scene's meshes in it, so it needs no file beside it.
 TEST(BakeOrder, HoldsTheTrianglesOfMeshes) {
   study::BakeOrder other = order();
   other.fluid.scene = base::resource("data/scenes/boat.toml");

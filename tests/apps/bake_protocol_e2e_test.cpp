@@ -23,7 +23,7 @@ class BakeProtocolE2e : public ::testing::Test {
     base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
     write_protocol(true, "\"LoRes\", \"Ours-TSp\"");
   }
-  /// Two settings, trials of 0.4 s.
+  /// Two settings for each method, and trials of 0.4 s.
   void write_protocol(bool fixation, const std::string& methods, const std::string& n_star = "64") {
     const std::string text = with_keys(short_protocol("0.4"), {{"scene", "[\"" + scene_ + "\"]"},
                                                                {"sd_fps", "[5]"},
@@ -39,7 +39,7 @@ class BakeProtocolE2e : public ::testing::Test {
     return out;
   }
   Ended bake(const std::vector<std::string>& more = {}) const { return run_program(command(more)); }
-  /// File name -> inode, which changes if a bake is made again.
+  /// The inode of each bake by file name. It changes if the bake is made again.
   std::map<std::string, ino_t> bakes() const {
     std::map<std::string, ino_t> out;
     for (const auto& entry : fs::directory_iterator(out_)) {

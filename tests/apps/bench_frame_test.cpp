@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// vip-bench frame on 1,024 particles.
+/// Runs vip-bench frame on 1,024 particles.
 class BenchFrameE2e : public ::testing::Test {
  protected:
   int bench(const std::string& more, const std::string& environment = "") {
@@ -47,7 +47,7 @@ TEST_F(BenchFrameE2e, TimesSolverAndPicturesApart) {
     EXPECT_GE(at("p95"), at("median")) << part;
   }
   EXPECT_NE(text.find(" p99"), std::string::npos) << text;
-  // A frame consists of its three parts, so it is never shorter than the shortest of each.
+  // A frame is solved, transferred and drawn, so its time is longer than that of its drawing.
   EXPECT_GT(result["frame_ms_median"].get<double>(), result["render_ms_median"].get<double>());
   EXPECT_EQ(result["transfer"], "uploaded");
   EXPECT_EQ(result["render_views"], 2);
@@ -102,8 +102,8 @@ TEST_F(BenchFrameE2e, StatesThatAreMeasuredAreNoLaunches) {
   EXPECT_EQ(every, launches("2"));
 }
 
-// Levels run every `turn` frames. Measured frames must fall equally often on each frame between two such
-// turns: at a turn of 4, measuring every tenth frame would reach only two of the four.
+// Levels change every `turn` frames. Measured frames must fall equally often on each frame between two
+// changes: with turn = 4, measuring every tenth frame would reach only two of the four.
 TEST(TimedRun, MeasuredStatesMeetEachFrameBetweenTurnsAsOften) {
   sim::Readings readings = sim::readings_of(sim::Preset::Tuned);
   for (const int turn : {1, 2, 4, 6}) {
@@ -122,8 +122,8 @@ TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_TRUE(figures()["divergence"].is_null());
   EXPECT_EQ(text.find("divergence"), std::string::npos) << text;
-  // One projection in a frame of a fifth of a second leaves water denser than 1.5 rho_0, which counts as a
-  // divergence.
+  // One projection in a frame of a fifth of a second leaves water denser than 1.5 times the rest density,
+  // which counts as a divergence.
   ASSERT_EQ(bench("--no-render --substeps 1 --iterations 1 --coarse-cycles 0 --dt 0.2"), 0) << text;
   const auto found = figures()["divergence"];
   EXPECT_GE(found["frame"].get<int>(), 1);

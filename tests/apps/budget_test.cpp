@@ -75,8 +75,8 @@ class BudgetChoice : public ::testing::Test {
     return {stored(reference, 1, 1, 100), stored(reference, 2, 1.001, 100), stored(usual, 1, 1.2, 5),
             stored(usual, 2, 1.21, 5),    stored(eight, 1, 1.1, 9),         stored(eight, 2, 1.11, 9)};
   }
-  /// Chooses a setting; repeated runs of the usual setting and of eight projections take these times per
-  /// frame.
+  /// Chooses a setting. Repeated runs of the usual setting and of that with eight projections take these
+  /// times per frame.
   sim::SettingFile choose(double budget_ms, double usual_ms, double eight_ms) {
     return study::choose_setting(
         cells(), origin, {plan, budget_ms, study::SweepError::Centre, 10},
@@ -149,7 +149,7 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   ASSERT_EQ(table(sweep).exit_code, 0);
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
-  // The nearest setting depends on how busy the machine is.
+  // The output does not depend on the nearest setting, which depends on how busy the machine is.
   EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is met by no setting of the sweep. Nearest is "));
   EXPECT_FALSE(std::filesystem::exists(path("none.toml")));
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));

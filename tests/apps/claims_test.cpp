@@ -1,5 +1,5 @@
-/// Hypotheses about methods: those that a protocol tests, and the reasons for the others, before the study,
-/// in the bundle and on the page; and hypotheses that a plan lists in their place.
+/// Hypotheses about methods: those that a protocol tests, and the reasons for not testing others, before the
+/// study, in the bundle and on the page. Also hypotheses that a plan lists instead.
 
 #include "libstudy/analysis/claims.hpp"
 
@@ -32,7 +32,7 @@ using ::testing::Not;
 
 std::string own_design() { return test::protocol_text("own_design"); }
 
-/// A design that rates realism and strain on 1 to 4.
+/// A design that asks for realism and strain on scales of 1 to 4.
 std::string own_realism() {
   return replaced(replaced(own_design(), "ask comfort strain", "ask realism strain"), "id = \"comfort\"",
                   "id = \"realism\"");
@@ -147,7 +147,7 @@ std::string hypotheses_of_bundle(const stats::AnalysisPlan& plan) {
   return base::read_file(folder / "bundle" / "hypotheses.json", 1 << 20);
 }
 
-// The hashes are of the texts that the program wrote while these hypotheses were code.
+// The hashes are those of the texts that the program wrote before the hypotheses moved from code to a file.
 TEST(Claims, TheShippedFileGivesTheTextsRulesTestsAndMarginsOfTheCodeBeforeIt) {
   EXPECT_EQ(base::sha256_hex(hypotheses_of_bundle({})),
             "98f335271caa2d6fa7ebc10984350206925f8aeb0bb463b25453cba2b79e1f45");
@@ -180,7 +180,8 @@ TEST(Claims, ThePapersProcedureAndItsLargerFamiliesAreThoseOfTheCodeBeforeTheFil
   }
 }
 
-/// The paper's file without its third hypothesis, with a name, a margin and a direction of one's own.
+/// The paper's file without its third hypothesis. The first hypothesis has another name, margin and
+/// direction.
 std::string changed_hypotheses() {
   std::string text = shipped_hypotheses();
   const auto third = text.find("[[hypothesis]]\nid = \"H3\"");

@@ -333,7 +333,7 @@ TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial, true, showing_s), 3 + 20 + 5)
       << "as it was measured here";
   EXPECT_DOUBLE_EQ(study::expected_s(protocol_, session().units, true, showing_s), sum + 10);
-  // 21 settings of 10 s with a mean of 26.67 frames/s.
+  // The 21 settings have 333 frames on average, estimated at 64 bytes each. The bound counts 200 frames.
   EXPECT_GT(study::expected_bytes(protocol_, session().units), 64u * 21 * 200);
 }
 

@@ -162,7 +162,7 @@ TEST(Costs, WhatPeopleSaidStandsBesideIt) {
   const study::Json row = row_of(results_of(protocol), "Ours");
   EXPECT_EQ(row.at("answers"), n);
   EXPECT_DOUBLE_EQ(row.at("said"), sum / n);
-  // One of each pair was chosen, so over all methods half of the showings were.
+  // One stimulus of each pair was chosen, so over all methods half of the showings were chosen.
   const study::Json pairs = results_of(made_study::task2(6));
   double chosen = 0, showings = 0;
   for (const auto& one : pairs.at("costs")) {

@@ -17,7 +17,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A probe on which everything has one kind of file system; these paths exist besides "/" and "/data".
+/// A probe for which every path has this kind of file system and this mount. Only "/", "/data" and `paths`
+/// exist.
 study::PlaceProbe made_probe(std::uint32_t kind, const std::string& mount = "",
                              std::set<std::string> paths = {}) {
   paths.insert({"/", "/data"});
@@ -59,7 +60,7 @@ TEST(DatabasePlace, FoldersThatAServiceCopiesAreKnownByNameOrMark) {
               ElementsAre(HasSubstr("Syncthing")));
 }
 
-// The warning appears once on the console, and nothing is refused.
+// The warning must appear once on the console, and no command may refuse.
 TEST(DatabasePlaceE2e, RunMergeAndWithdrawWarn) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "Nextcloud");

@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Return times of swaps on a screen of this period; the beat after swap `missed` is missed.
+/// Times at which swaps return on a screen with this period. The beat after swap `missed` is missed.
 std::vector<std::int64_t> swaps(double period_ns, int count, double jitter_ns = 0, int missed = -1) {
   std::vector<std::int64_t> out;
   double at = 1e9;

@@ -37,7 +37,7 @@ struct MadeStudy {
   study::TaskProtocol& protocol() { return study.protocols.front(); }
   const study::Protocol& whole() const { return *study.protocols.front().whole; }
 
-  /// Adds a trial of a person, whose sessions come one after another.
+  /// Adds a trial of a person. All trials of a person must be added one after another.
   void answer(const std::string& person, int first, std::optional<int> second, int score) {
     auto& sessions = protocol().sessions;
     if (sessions.empty() || sessions.back().participant != person) {
@@ -73,8 +73,8 @@ struct MadeStudy {
   }
 };
 
-/// Ten people of each content; P(yes) at 100 ms is planted: person i says yes in i % 4 + 1 of 5 trials, and
-/// once at 50 ms.
+/// Ten people of each content. The share of yes at 100 ms is planted: person i says yes in i % 4 + 1 of 5
+/// trials there, and in one trial at 50 ms.
 MadeStudy made_hitches() {
   MadeStudy out(shipped_text("hitches"));
   for (int i = 0; i < 20; ++i) {
@@ -102,7 +102,7 @@ TEST(FactorStudy, TestsOneValueOfEachParticipant) {
                "test = \"wilcoxon\"") +
       declared("d", "{hitch = \"h150\"}, {hitch = \"h50\"}", "test = \"paired_t\""));
   const Json& tests = json.at("hypotheses");
-  // Differences are 0, .2, .4, .6 in turn, five people each.
+  // The people's differences are 0, .2, .4, .6 in turn, for five people each.
   const Json& a = tests.at(0);
   EXPECT_EQ(a.at("n_a"), 20);
   EXPECT_NEAR(a.at("estimate").get<double>(), 0.3, 1e-12);
@@ -158,7 +158,7 @@ TEST(FactorStudy, DescribesEachCellOverParticipants) {
                 .at(0)
                 .at("exploratory"),
             false);
-  // A preregistration counts if it is intact and holds the protocol.
+  // A bundle counts as a preregistration if its files are unchanged and it has the protocol.
   const std::string test = declared("a", "{hitch = \"h100\"}", "against = 0.5\ntest = \"binomial\"");
   const auto status = [&](const study::FrozenFacts& frozen) {
     return made.results(test, {}, frozen).at("hypotheses").at(0).at("status").get<std::string>();
@@ -189,7 +189,8 @@ TEST(FactorStudy, PairsGiveTheShareThatChoseTheComparison) {
   MadeStudy made(shipped_text("trace_smoothed"));
   const auto& choice = made.protocol().questions.front();
   const int first = choice.anchors.front().first, second = choice.anchors.back().first;
-  // Cell 0 is the standard. Everybody chooses "captured" (cell 1) in 3 of 4 trials, in both orders.
+  // Cell 0 is the standard. The first person chooses "captured" (cell 1) in all four trials, the others in
+  // three.
   for (int i = 0; i < 6; ++i) {
     const std::string person = "P0" + std::to_string(i + 1);
     made.answer(person, 0, 1, second);

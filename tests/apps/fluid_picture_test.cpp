@@ -38,7 +38,8 @@ TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
   }
 }
 
-/// Mean row of pixels with the obstacle's colour: more red than blue, unlike water and room.
+/// Mean row of the pixels with the obstacle's colour: at least twice as much red as blue, unlike water and
+/// room.
 double middle_row(const sim::Image& image) {
   double sum = 0, count = 0;
   for (int y = 0; y < image.height; ++y) {

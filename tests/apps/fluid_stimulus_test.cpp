@@ -19,10 +19,10 @@ using ::testing::HasSubstr;
 std::string scene_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
 sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 
-/// A block of the test bake's particles, which advances one frame with each step.
+/// The test bake's particles, which move by a frame with each step.
 class FakeSimulation final : public sim::Simulation {
  public:
-  /// `looks` receives all looks, if not null.
+  /// `looks` receives all looks, unless it is null.
   explicit FakeSimulation(std::vector<sim::Looks>* looks = nullptr) : looks_(looks) {}
   bool look(const sim::Looks& looks) override {
     if (looks_) looks_->push_back(looks);
@@ -255,7 +255,7 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   };
   live.start(0);
   const sim::Bytes first = picture(live, 0), want = picture(live, 2), got = picture(baked, 2);
-  // Positions differ by at most 0.15 mm, so few bytes differ by more than a little.
+  // Positions in the bake differ by at most 0.15 mm, so few bytes differ by more than 8.
   std::size_t far = 0, moved = 0;
   for (std::size_t i = 0; i < want.size(); ++i) {
     far += std::abs(int(want[i]) - int(got[i])) > 8;

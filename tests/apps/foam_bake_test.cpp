@@ -113,8 +113,8 @@ TEST(FoamBake, OfOtherEffectsIsADeparture) {
   EXPECT_THAT(study::fluid_departures(wanted, none), Contains(HasSubstr("instead of no effects")));
 }
 
-/// Formats before 4 stored no foam: particles without it are a different stimulus, but pictures still show
-/// it.
+/// Bakes before format 4 stored no foam. A bake of particles without foam is a different stimulus, but its
+/// pictures still show the foam.
 TEST(FoamBake, OfAnEarlierFormatLacksTheScenesFoam) {
   if (!sim::has_effects()) GTEST_SKIP() << "built without effects";
   const sim::BakeReader old(base::resource("tests/libsim/bake/fixtures/format_3.bake"));

@@ -17,8 +17,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// protocols/foam.toml, coarse and short. Foam alone does not change the water, so one level adds drag too:
-/// then the frame records differ between the levels.
+/// protocols/foam.toml, coarse and short. Foam alone does not change the water, so one level adds drag: then
+/// the records of frames differ between the levels.
 std::string short_foam() {
   return replaced(with_keys(coarse(shipped_text("foam")), {{"effects", "[\"none\", \"foam\", \"scene\"]"}}),
                   "keep = [\"foam\"]",
@@ -56,7 +56,7 @@ class FoamKillE2e : public ::testing::Test {
             "--clock", "virtual",   "--observer", "random",        "--seed", "5",       "--backend",
             "cpu",     "--display", "headless",   "--participant", "P01",    "--events"};
   }
-  /// Kills the run while the second stimulus of the `trial`-th trial is shown.
+  /// Kills the run while the second stimulus of the trial at position `trial` is shown.
   std::string run_and_kill(const std::string& database, int trial) const {
     Process program(arguments(database));
     program.read_line();  // the plan is written

@@ -25,7 +25,7 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
 std::string foam_protocol() { return base::resource("protocols/foam.toml").string(); }
 
-/// The list's entry with these values.
+/// The entry of the list that has these values.
 json entry(const json& list, const std::map<std::string, std::string>& words) {
   for (const auto& one : list) {
     bool same = true;

@@ -21,7 +21,7 @@ class FramingE2e : public ::testing::Test {
     const std::string scene = base::read_file(base::resource("data/scenes/faucet.toml"), 1 << 20);
     base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
   }
-  /// A protocol of short trials with this method; `more` comes first in the file.
+  /// A protocol of short trials with this method. `more`: further keys of the protocol's head.
   void write_protocol(const std::string& method, const std::string& more = "") {
     base::write_file_atomically(
         protocol_, with_before(with_keys(short_protocol("0.2"), {{"scene", "[\"" + scene_ + "\"]"},

@@ -96,7 +96,7 @@ class FramingGl : public ::testing::Test {
   struct Seen {
     bool any = false, edge = false;  ///< among the picture's pixels that show fluid
   };
-  /// Draws the boxes that must be visible as balls.
+  /// Draws the boxes that must be visible, as balls on their surfaces.
   Seen draw(const sim::Scene& scene, const sim::View& view) {
     sim::RenderOptions options;
     options.clip_to_tank = false;
@@ -142,8 +142,8 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
   }
 }
 
-/// 27.4 degrees is the vertical angle of a 16:9 picture 520 mm wide, seen from 600 mm; earlier versions of
-/// docs/session.md set it by flags. This camera cuts off parts of the scenes, and cut_off() must name them.
+/// 27.4 degrees is the vertical angle of a 16:9 picture 520 mm wide, seen from 600 mm. A camera with this
+/// angle cuts off parts of the scenes, and cut_off() must name them.
 TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
     const sim::Scene scene = shipped(name);
@@ -162,7 +162,8 @@ sim::Camera tilted() {
   return camera;
 }
 
-/// An eye at `right_m` of the anchor, a picture of 200 x 100 px whose frustum reaches further down and left.
+/// An eye `right_m` to the right of the anchor. Its picture has 200 x 100 px, and its frustum reaches further
+/// left and down.
 study::EyeView eye_at(double right_m) {
   study::EyeView eye;
   eye.position_m = {right_m, 0, 0};
@@ -174,7 +175,7 @@ study::EyeView eye_at(double right_m) {
 
 TEST(EyeView, StandsAtTheScenesCameraWithItsHeadingAndALevelHorizon) {
   const sim::View view = study::eye_view(tilted(), eye_at(0));
-  // Slope s to the right is at (s + 1.2) / 2 of the width, slope t up at (t + 0.6) / 1 of the height.
+  // A ray of slope s to the right and t up is at (s + 1.2) / 2 of the width and (t + 0.6) / 1 of the height.
   const auto ahead = study::place_in(view, {-7, 2, 1});
   ASSERT_TRUE(ahead);
   EXPECT_NEAR(ahead->first, 120, 1e-3);

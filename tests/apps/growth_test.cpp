@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Times factor n^exponent, each changed by one of the shares.
+/// Times factor n^exponent for n particles, each multiplied by one of `shares`.
 std::vector<measure::GrowthRow> rows_of(double factor, double exponent, const std::vector<double>& shares) {
   std::vector<measure::GrowthRow> out;
   double particles = 1000;
@@ -35,7 +35,7 @@ TEST(Growth, APowerLawGivesItsExponent) {
   EXPECT_NEAR(exact.standard_error, 0, 1e-12);
 }
 
-// Closed form of a slope over x = -1, 0, 1 and its error with one degree of freedom.
+// Closed form of the slope of a line over x = -1, 0, 1 and of its standard error with one degree of freedom.
 TEST(Growth, TheErrorIsThatOfASlope) {
   const std::vector<double> shares{1.1, 0.9, 1.3};
   const measure::Growth growth = measure::growth_of(rows_of(1, 1, shares));

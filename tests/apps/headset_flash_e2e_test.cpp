@@ -37,7 +37,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   std::vector<std::string> causes() const {
     return study::test::column(database_, "SELECT detail FROM event WHERE kind = 'trial interrupted'");
   }
-  /// Times at which the stimulus appears and disappears, on the session's clock, ns, from the record.
+  /// Times at which the stimulus appears and disappears, on the session's clock, ns, from the database.
   std::vector<std::int64_t> changes() const {
     std::vector<std::int64_t> all;
     study::sqlite::Connection database(database_, study::sqlite::Open::Read);
@@ -52,7 +52,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   const std::string dam_ = folder_ / "dam.bake", database_ = folder_ / "study.db";
 };
 
-/// A script that from slot 60 on repeats `bad`, and 20 slots later `good`.
+/// A script that repeats from slot 60 on: `bad`, and 20 slots later `good`.
 std::string again_and_again(const std::string& bad, const std::string& good) {
   std::string script = "at=";
   for (int slot = 60; slot < 1200; slot += 40) {

@@ -180,8 +180,8 @@ TEST_F(HeadsetGazeE2e, ATrackerIsValidatedAtNineTargets) {
   EXPECT_EQ(count("presentation"), 0);
 }
 
-/// Mean x of the particles of the finest level in a live fluid, shown to eyes that look this many degrees to
-/// the left.
+/// Mean x of the particles of the finest level, m, in a live fluid that is shown to eyes that look this many
+/// degrees to the left.
 double fine_x(double look_yaw) {
   study::HeadsetChoice choice;
   choice.eye_gaze = true;

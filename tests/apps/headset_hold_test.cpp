@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Records the eye views that it was drawn for.
+/// Records the eye views for which it was drawn.
 class SeenStimulus final : public study::Stimulus {
  public:
   std::string description() const override { return "seen"; }
@@ -55,7 +55,7 @@ class HeadsetHoldGl : public test::HeadsetRuns {
     for (const auto& frame : played.frames) EXPECT_FALSE(frame.late);
     display.clear();
   }
-  /// Text in the left eye's layer that matches `what`, slot by slot.
+  /// The text that matches `what` in the left eye's part of each frame's log line, slot by slot.
   std::vector<std::string> logged(const std::string& what) const {
     std::vector<std::string> found;
     std::istringstream lines(calls());

@@ -139,7 +139,7 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
   eye.fov = {-0.8f, 0.8f, 0.8f, -0.8f};
   eye.width_px = eye.height_px = 100;
   const sim::Mat4 view = seen_by(eye).view;
-  // A point 1 m to the right of the eye and 3 m ahead, in the eye's own axes.
+  // A point 1 m to the right of the eye and 3 m ahead, along the room's axes.
   const std::array<double, 3> point{1.5, 1, -1};
   std::array<double, 3> seen{};
   for (std::size_t row = 0; row < 3; ++row) {

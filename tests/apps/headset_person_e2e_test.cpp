@@ -22,7 +22,7 @@ const std::string pilot_targets = "targets=0.5:0.503,0.5:0.39,0.5:0.9";
 const std::string by_ray = "point=page;hold=0.4;" + pilot_targets + ";";
 const std::string by_dwell = "look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + pilot_targets + ";";
 
-/// A session that does not progress ends after this many frames.
+/// A session that makes no progress ends after this number of frames.
 constexpr int most_frames = 4000;
 std::string script_of(const std::string& events) {
   return "at=" + events + std::to_string(most_frames) + ":exit";
@@ -63,7 +63,7 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
     return study("size=32x32;" + profile, arguments(protocol, more));
   }
 
-  /// The first value of each row, in order.
+  /// The first column of all rows, in order.
   std::vector<std::string> column(const std::string& sql) const {
     study::sqlite::Connection database(database_, study::sqlite::Open::Read);
     study::sqlite::Statement row(database, sql);

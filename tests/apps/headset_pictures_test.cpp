@@ -110,7 +110,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
   const double step_m = 0.05;
   for (std::size_t e = 0; e < 2; ++e) {
     const Eye& eye = *eyes[e];
-    // The head is at the world's origin, then a step to its right.
+    // The head is at the world's origin, and then moved to its right.
     for (const double moved_m : {0.0, step_m}) {
       const sim::Image image = show("size=600x600;at=2:x/" + std::to_string(moved_m), eye);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -128,7 +128,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
       }
     }
   }
-  // Nearer discs have a larger parallax between the eyes, with the right sign.
+  // Nearer discs must have a larger parallax between the eyes, with the right sign.
   const double parallax[] = {right[0][0] - right[1][0], right[0][1] - right[1][1], right[0][2] - right[1][2]};
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(parallax[i], 2 * half_ipd_m / -static_cast<double>(study::test_discs()[i].middle_m[2]),
@@ -152,7 +152,7 @@ TEST_F(HeadsetPicturesE2e, EveryGreyArrivesInSrgbAndInLinearImages) {
   expect_ramp("formats=linear_first");
   expect_ramp("formats=rgba16f,rgba8");
   expect_ramp("formats=linear_first;broken=srgb8_alpha8");
-  // A call into the runtime may leave any GL state.
+  // A call into the runtime may change any GL state.
   expect_ramp("leave_context=other;leave_error=1");
   expect_ramp("leave_context=none");
 }

@@ -70,7 +70,7 @@ TEST_F(HeadsetRealTimeGl, NoSlotIsMissedWhileAStimulusStartsAndComputes) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // as long as writing an answer may take
   display_.reset();
 
-  // Two starts and eight steps on the slots' thread would miss 40 slots or more.
+  // On the thread of the slots, the stimulus' start of 2 s alone would miss 40 slots.
   EXPECT_GT(count("frame "), 60);
   EXPECT_LE(count("starved"), 1);
   int late = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// vip-study headset on the simulated runtime of tests/headset, through the real loader.
+/// Runs vip-study and other programs on the simulated runtime of tests/headset, through the real loader.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class HeadsetRuns : public ::testing::Test {
     ::setenv("VIP_XR_LOG", log().c_str(), 1);
     ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
     ::setenv("XR_LOADER_DEBUG", "none", 1);
-    // Stored rates and settled water of another run would let this one skip its measurements.
+    // Rates and settled water that another run stored would let this run skip its measurements.
     ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1);
     for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   }
@@ -51,12 +51,12 @@ class HeadsetRuns : public ::testing::Test {
   Environment simulated(const std::string& profile) const {
     return {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}};
   }
-  /// vip-study headset on a runtime that checks its caller against the specification.
+  /// Runs vip-study headset on the simulated runtime, which must find no breach of the specification.
   Ended on(const std::string& profile, std::vector<std::string> arguments = {}) {
     arguments.insert(arguments.begin(), "headset");
     return study(profile, arguments);
   }
-  /// Runs any command of vip-study on the simulated runtime; expects it to follow the specification.
+  /// Runs any command of vip-study on the simulated runtime, which must find no breach of the specification.
   Ended study(const std::string& profile, const std::vector<std::string>& arguments) {
     std::filesystem::remove(log());
     Ended ended = run(arguments, simulated(profile));

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Number of slots of each image, in order; black between two is left out.
+/// Number of slots of each image, in order. Black frames are left out.
 std::vector<int> holds_of(const std::string& log) {
   std::vector<int> holds;
   std::string last;
@@ -47,7 +47,8 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 60); }
 
-  /// The pilot's protocol with these means and standard deviations, played although some are approximate.
+  /// The pilot's protocol with these means and standard deviations. It is played although some are
+  /// approximate.
   std::string pilot(const std::string& means, const std::string& sds) {
     base::write_file_atomically(
         folder_ / "pilot.toml",
@@ -90,7 +91,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     row.step();
     return row.text(0);
   }
-  /// Ten frames a second for 3 s, in about the frames 90 to 150.
+  /// Ten frames/s for 3 s at 20 Hz. The trial is shown in about the slots 90 to 150.
   test::Ended real_session(const std::string& profile) {
     return study(
         real_profile + ";" + profile,
@@ -214,8 +215,7 @@ TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) 
   }
 }
 
-/// Tests in which the runtime announces the loss beforehand. They take as long as the other tests of this
-/// file together, so they are slow tests.
+/// Slow tests: the runtime announces the loss of the session beforehand, or a wait hangs in real time.
 class HeadsetSessionSlow : public HeadsetSessionE2e {};
 
 TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewInRealTime) { lose_session_in_real_time("lost_now"); }

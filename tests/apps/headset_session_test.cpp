@@ -35,7 +35,7 @@ class HeadsetSessionGl : public test::HeadsetRuns {
     for (int i = 0; i < 100 && !session_->running(); ++i) session_->poll();
     ASSERT_TRUE(session_->running());
   }
-  /// Returns the content of a frame.
+  /// Draws a frame and returns its layers.
   using Draw = std::function<study::HeadsetLayers(const study::HeadsetSlot&)>;
   void run_frames(int count, const Draw& draw) {
     for (int i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
   const sim::Image shown = picture(7, "quad");
   EXPECT_EQ(shown.width, 40);
   EXPECT_EQ(shown.height, 20);
-  // Within one level, as for pictures: GPUs round sRGB differently.
+  // Within one level, because GPUs round sRGB differently.
   for (const auto& [part, level] : {std::pair(0u, 255), {1u, 128}, {2u, 64}, {3u, 255}})
     EXPECT_NEAR(shown.rgba[part], level, 1);
 }

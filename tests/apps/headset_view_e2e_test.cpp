@@ -31,7 +31,7 @@ class HeadsetViewE2e : public test::HeadsetRuns {
     EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
     return ended;
   }
-  /// Text in each frame's line that matches `what`.
+  /// The text that matches `what` in the left eye's part of each frame's log line.
   std::vector<std::string> logged(const std::string& what) const {
     std::vector<std::string> found;
     std::istringstream lines(calls());
@@ -54,7 +54,7 @@ TEST_F(HeadsetViewE2e, AFluidRunsAtItsOwnSpeedAndIsDrawnAnewInEverySlot) {
   EXPECT_THAT(ended.out, HasSubstr("levels      follow the eye tracker\n"));
   EXPECT_THAT(ended.out, HasSubstr("frames      12, of the last 11 mean 60.0, SD 0.0 frames/s\n"));
   EXPECT_THAT(ended.out, HasSubstr("ended       after its frames\n"));
-  // 60 frames a second at 120 Hz: two slots each, with a different pose in every slot.
+  // 60 frames a second at 120 Hz take two slots each. The pose must differ from slot to slot.
   const auto poses = logged("at [-.0-9]+ [-.0-9]+ [-.0-9]+ turned [-.0-9]+ [-.0-9]+ [-.0-9]+ [-.0-9]+");
   EXPECT_GE(poses.size(), 23u);
   EXPECT_EQ(std::set<std::string>(poses.begin(), poses.end()).size(), poses.size());

@@ -37,13 +37,15 @@ std::set<std::string> labels_of(sim::MethodKind method) {
   return out;
 }
 
-// The table finds a pass by its label: a renamed pass would silently lose its lower bound of bytes.
+// The table finds a pass by its label, so a renamed pass would lose its lower bound of bytes without an
+// error.
 TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
   auto launched = labels_of(sim::MethodKind::HiRes);
   EXPECT_FALSE(launched.contains("density beside fresh"));
   launched.merge(labels_of(sim::MethodKind::Ours));
   for (const auto& pass : measure::pass_bytes()) EXPECT_TRUE(launched.contains(pass.label)) << pass.label;
-  // A launch over a few particles moves fewer bytes than one over all, so it has a name but no floor.
+  // A launch over few particles moves fewer bytes than one over all, so it has another label and no lower
+  // bound.
   EXPECT_TRUE(launched.contains("density beside fresh"));
   EXPECT_TRUE(launched.contains("displacement beside fresh"));
   EXPECT_FALSE(measure::least_bytes("density beside fresh", {}));
@@ -51,7 +53,7 @@ TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
 
 TEST(PassBytes, TheTableHasAsManyBytesAsTheFunctorsMove) {
   const measure::PassWater water{.particles = 1000, .solved_share = 1, .listed = 50};
-  // Position and support 16, count 4, two results of 4, and 50 entries of 4.
+  // Bytes of each particle: position and support 16, count 4, two results of 4, and 50 list entries of 4.
   EXPECT_EQ(measure::least_bytes("density", water), 1000 * (16 + 4 + 4 + 4 + 50 * 4));
   EXPECT_EQ(measure::least_bytes("displacement", water), 1000 * (16 + 4 + 4 + 16 + 50 * 4));
   EXPECT_EQ(measure::least_bytes("list neighbours", water), 1000 * (16 + 4 + 50 * 4));

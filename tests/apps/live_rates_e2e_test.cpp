@@ -34,9 +34,10 @@ class LiveRatesE2e : public ::testing::Test {
                                                                        {"method", "[\"LoRes\"]"},
                                                                        {"n_star", "[\"64\"]"}}));
   }
-  /// Asks for a thousand frames of this fluid a second, which no machine makes.
+  /// Asks for a thousand frames of this fluid a second, more than any machine computes.
   void write_too_fast() { write_protocol("1000", "0.5"); }
-  /// Trials are cut as soon as their time is over, so that even a machine that makes most frames cuts them.
+  /// Trials are cut as soon as their time is over, so that a trial is cut even on a machine that computes
+  /// most of its frames.
   void cut_at_once() { replace_in(protocol_, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "); }
   std::function<void()> own_cache() {
     return [this] { ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1); };
@@ -116,7 +117,7 @@ TEST_F(LiveRatesE2e, WhatIsReachedIsToldAndPlayed) {
   const Ended ended = run();
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.err, AllOf(HasSubstr("live on this station"), HasSubstr("(1, 0)")));
-  // The cost of its frames is in the record, and reaches readers of the tasks.
+  // The cost of the session's frames is in the database, and read_tasks() returns it.
   const auto session = study::read_tasks(database_).protocols.at(0).sessions.at(0);
   ASSERT_EQ(session.frame_costs.size(), 1u);
   EXPECT_EQ(session.frame_costs[0].what, (study::StimulusSpec{scene_, "LoRes", "64"}));

@@ -29,7 +29,7 @@ class MachineLockTest : public ::testing::Test {
   const std::filesystem::path file_ = folder_ / "vip-bench.lock";
 };
 
-/// Takes the lock as another program does.
+/// Takes the lock as another program would.
 class Other {
  public:
   explicit Other(const std::filesystem::path& file) : fd_(::open(file.c_str(), O_RDONLY | O_CREAT, 0644)) {}
@@ -70,7 +70,7 @@ TEST_F(MachineLockTest, WhatIsNoLockFileIsNamedWithItsMend) {
 
 class MachineLockE2e : public MachineLockTest {
  protected:
-  /// Prints stdout and stderr line by line.
+  /// Runs vip-bench accuracy. Its stdout has the lines of stderr too.
   test::Process bench(const std::string& arguments) const {
     return test::Process({"/bin/sh", "-c",
                           "exec env -u DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR "/vip-bench accuracy " +

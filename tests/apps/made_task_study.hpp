@@ -1,5 +1,5 @@
 #pragma once
-/// Studies of Task 1 and Task 2, made in memory in the form that a database gives.
+/// Studies of Task 1 and Task 2, made in memory in the form in which they are read from a database.
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +72,7 @@ inline std::vector<study::Question> questions_about_people() {
 }
 
 /// Age and gender of all participants but the last, who gave no answers. Ages are 20 to 31 years. The first
-/// answered "another"; every other participant is female, the others are male.
+/// participant answered "another". The second, fourth and so on are male, the others female.
 inline std::vector<study::PersonalEntry> about_people(int participants) {
   std::vector<study::PersonalEntry> out;
   for (int person = 0; person + 1 < participants; ++person) {
@@ -85,7 +85,8 @@ inline std::vector<study::PersonalEntry> about_people(int participants) {
   return out;
 }
 
-/// One scene at each n_*, five showings each. The experimenter was not blind to the second participant.
+/// Task 1: each person sees one scene at each n_*, in five showings each. The experimenter was not blind to
+/// the second person.
 inline study::TaskProtocol task1(int participants, const std::string& gaze = "tracked", unsigned seed = 1) {
   study::TaskProtocol out{"task1", "1.0",   std::string(64, '1'), false, participants,
                           scenes,  methods, {"16k", "32k"},       {},    {}};
@@ -117,7 +118,7 @@ inline study::TaskProtocol task1(int participants, const std::string& gaze = "tr
   return out;
 }
 
-/// One scene, all ten pairs.
+/// Task 2: each person sees all ten pairs in one scene.
 inline study::TaskProtocol task2(int participants, const std::string& gaze = "tracked", unsigned seed = 2) {
   study::TaskProtocol out{"task2", "1.0", std::string(64, '2'), true, participants, scenes, methods, {"32k"},
                           {},      {}};

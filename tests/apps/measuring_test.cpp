@@ -24,7 +24,7 @@ study::Protocol pilot_with(const std::string& key, const std::string& value) {
                                "pilot.toml");
 }
 
-/// A stimulus and a display in one. Preparing and rendering a frame take the given times on a virtual clock.
+/// A stimulus and a display in one. Preparing and drawing a frame take these times on a virtual clock.
 class SlowStage final : public study::Stimulus, public study::Display {
  public:
   using Cost = std::function<double(std::int64_t)>;

@@ -92,8 +92,8 @@ TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   std::vector<std::string> terms;
   for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
   EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
-  // Two terms are linear combinations of others: each n_* has a period of its own, and each method is always
-  // shown at the same position.
+  // Two terms are linear combinations of others, because each n_* has a period of its own, and each method is
+  // always shown at the same position.
   EXPECT_EQ(mixed[0].at("left_out"), (study::Json{"position", "period 2"}));
   int less = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
@@ -164,7 +164,7 @@ TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
   EXPECT_THAT(study::report::results_page(json), HasSubstr("unknown, "));
 }
 
-// The tests equal those in the results of each pair.
+// The tests of the hypotheses equal those in the results of each pair.
 TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
   const auto json = results_of(with_dropout(12), stats::ScoreTests::Mixed);
   EXPECT_EQ(json.at("plan").at("tests"), "mixed");

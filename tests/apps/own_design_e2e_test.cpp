@@ -43,7 +43,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
               HasSubstr("None.\n- Not tested: H1 to H3 of comfort: the trials ask no question 'realism'"));
   EXPECT_THAT(words, HasSubstr("- Not tested: H4 to H6 of comfort: no pairs of methods are shown.\n"));
   EXPECT_THAT(words, Not(HasSubstr("FovFluid")));
-  // plan.toml lists rules without effect as comments.
+  // plan.toml has rules without effect only as comments.
   for (const char* rule :
        {"\nrealism = ", "\nsickness = ", "\nmin_catch_correct = ", "\nmax_repeat_difference = "})
     EXPECT_THAT(file(folder / "bundle" / "plan.toml"), Not(HasSubstr(rule)));

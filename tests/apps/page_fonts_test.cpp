@@ -56,7 +56,7 @@ TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
   }
 }
 
-// Characters beyond the usual ones are drawn if a font has them, not replaced by a question mark.
+// Characters that the usual font lacks are drawn from another font that has them.
 TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
   const study::PageType type(study::page_characters(protocol_asking("☃ snow?")));
   ImFontAtlas atlas;

@@ -32,8 +32,8 @@ double granularity_of(const std::function<double(int, int)>& luminance) {
 }
 
 TEST(PictureMeasure, GranularityIsTheWavelengthOfAWave) {
-  // The picture is a wave along x, so it has a slope along one axis only. Its difference from one pixel to
-  // the next is within 2 % of the derivative.
+  // The picture is a wave along x, so it has a slope along one axis only. The difference between neighbouring
+  // pixels is within 2 % of the derivative.
   for (const double length_px : {8.0, 12.0, 16.0})
     EXPECT_NEAR(granularity_of([&](int x, int) { return 0.3 + 0.1 * wave(x, length_px); }), length_px,
                 0.05 * length_px);
@@ -47,7 +47,7 @@ TEST(PictureMeasure, GranularityKnowsNeitherContrastNorSlowShading) {
 }
 
 TEST(PictureMeasure, OnlyTheGrainNearTheGazeCounts) {
-  // Fine on the left, coarse on the right.
+  // The wave is fine on the left and coarse on the right.
   const MeasuredPicture one = picture([](int x, int) { return 0.3 + 0.1 * wave(x, x < 120 ? 8 : 16); });
   EXPECT_NEAR(study::measure_pictures({one, one, one}, 45, 80).granularity_px, 8, 0.6);
   EXPECT_NEAR(study::measure_pictures({one, one, one}, 195, 80).granularity_px, 16, 1.2);

@@ -82,7 +82,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_LT(last.at("solver_ci")[0], last.at("solver_mu"));
 }
 
-// At a = 18, b = 0.01 the curve is below the shown frame rates at large deviations.
+// At a = 18, b = 0.01 the curve lies below the frame rates shown at large deviations.
 TEST(PilotFit, WidthIsJudgedWhereTheCurveIsInReach) {
   const auto fit = fit_of(simulated_pilot("ptpe:a=18,b=0.01", 16, 3));
   const auto& direct = fit.chosen().direct;
@@ -114,8 +114,8 @@ TEST(PilotFit, ACurveWithoutABandIsNotForASolver) {
 }
 
 TEST(PilotFit, AContourWithoutAnIntervalIsFlagged) {
-  // With few people a contour at the edge of the settings often has no interval; the test uses the first such
-  // pilot.
+  // With few people a contour at the edge of the settings often has no interval. The test uses the first such
+  // pilot among 40.
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto fit = fit_of(simulated_pilot("ptpe:a=15,b=0.015", 8, seed));
     if (!fit.ok()) continue;
@@ -232,7 +232,7 @@ TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
   EXPECT_EQ(select(pilot)->simulated.size(), 4u);
 }
 
-// n, mean, standard deviation and t interval of one setting, computed by hand.
+// n, mean, standard deviation and t interval of one setting are computed by hand.
 TEST(PilotFit, DescribesEachSettingOverItsParticipants) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 5, 3);
   const std::vector<int> scores{2, 3, 3, 5, 7};
@@ -281,7 +281,7 @@ TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
 }
 
 TEST(PilotFit, KeepsNoNumberThatIsNone) {
-  // A NaN would be written as null: no null is allowed where the status is ok.
+  // A NaN would be written as null, so no null is allowed where the status is ok.
   const auto json = study::fit_json(fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
   const std::function<void(const ordered_json&, const std::string&)> check = [&](const ordered_json& value,
                                                                                  const std::string& place) {
@@ -304,8 +304,8 @@ TEST(PilotFit, ToleratesIncompleteParticipants) {
   EXPECT_TRUE(has_flag(fit, "incomplete_participants"));
 }
 
-// People who reverse the scale, get tired, or press the lowest key: the fit reports them and corrects by the
-// plan's rules.
+// Some people reverse the scale, get tired, or press the lowest key. The fit reports this and corrects it by
+// the plan's rules.
 TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
   for (auto& session : pilot.sessions)

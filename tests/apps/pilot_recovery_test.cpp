@@ -64,10 +64,10 @@ TEST(PilotRecovery, IntervalsHoldTheDemosTruth) {
   const Truth truth{24, 0.02};
   const auto r = recover(truth, studies, 300);
   EXPECT_EQ(r.unfitted, 0);
-  // Of 40 intervals 95 %, 38, should hold the truth, with a standard deviation of 1.4.
+  // 95 % of 40 intervals, 38, should cover the truth, with a standard deviation of 1.4.
   EXPECT_GE(r.holds_a, 33);
   EXPECT_GE(r.holds_b, 33);
-  // The bias must be well below the scatter of the estimates. Half widths are near 1.96 to 2.6 standard
+  // The bias must be below the standard deviation of the estimates. Half widths are near 1.96 to 2.6 standard
   // deviations.
   EXPECT_NEAR(r.mean_a, truth.a, r.sd_a);
   EXPECT_NEAR(r.mean_b, truth.b, r.sd_b);
@@ -94,8 +94,8 @@ TEST_P(PilotRecoverySlow, IntervalsCoverBetween85And99Percent) {
   }
 }
 
-// The demo's truth, the truth of the command examples, whose curve leaves the frame rates shown, and four
-// others over the grid of settings.
+// The demo's truth; the truth of the command examples, whose curve leaves the frame rates shown; and four
+// others.
 INSTANTIATE_TEST_SUITE_P(Truths, PilotRecoverySlow,
                          testing::Values(Truth{24, 0.02}, Truth{31, 0.035}, Truth{20, 0.03}, Truth{28, 0.01},
                                          Truth{35, 0.015}, Truth{27, 0.028}));

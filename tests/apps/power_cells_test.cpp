@@ -32,7 +32,7 @@ study::PowerRequest request_for(const std::string& protocol, std::vector<int> n,
   return out;
 }
 
-/// Two blocks of studies of 24 people, with the mixed model.
+/// 220 studies of 24 people by the mixed model, which are more than one cell.
 study::PowerRequest by_model() {
   auto out = request_for("protocols/task1.toml", {24}, 220, {"null"});
   out.plan.plan.tests = stats::ScoreTests::Mixed;
@@ -85,7 +85,7 @@ TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
 
 class PowerShards : public ::testing::Test {
  protected:
-  /// Writes one file a cell, from the last cell to the first.
+  /// Writes one file for each cell, from the last cell to the first.
   std::vector<std::filesystem::path> run_apart(const study::PowerRequest& request) const {
     std::vector<std::filesystem::path> out;
     auto cells = study::power_cells(request);

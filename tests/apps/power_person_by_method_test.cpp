@@ -29,7 +29,8 @@ study::PowerRequest request_for(const std::string& world, int studies) {
   return request;
 }
 
-/// Correlation over people between the difference of two methods at one n_* and at the other.
+/// Correlation over people between the difference of two methods at one number of particles and that at the
+/// other.
 double correlation_between_n_stars(double person_by_method) {
   auto request = request_for("null", 1);
   request.answers = study::AnswerScale::Continuous;
@@ -62,7 +63,7 @@ TEST(PowerPersonByMethod, IsTheSameAtEveryNStarAndLeavesTheSpreadAsItWas) {
   EXPECT_NEAR(correlation_between_n_stars(1), 1, 1e-9);
 }
 
-/// Power of H1's claim, with eight tests, if a difference is half its standard deviation.
+/// Power of H1's claim, which needs eight tests, if a difference is half its standard deviation.
 study::Estimated power_of_h1(study::PersonByMethod person_by_method, int studies) {
   auto request = request_for("effect", studies);
   request.effect = 0.5;

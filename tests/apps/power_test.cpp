@@ -22,7 +22,7 @@ namespace {
 using study::Json;
 using study::PowerRequest;
 
-/// A simulated share lies within this many standard errors of the truth in all but 1 of 16,000 cases.
+/// In all but 1 of 16,000 cases a simulated share lies within this many standard errors of the truth.
 constexpr double errors_allowed = 4;
 
 PowerRequest request_for(const std::string& protocol, std::vector<int> n, int studies) {
@@ -109,8 +109,8 @@ TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
   EXPECT_NEAR(*test.curve[0].closed_form, *expected, 1e-12);
 }
 
-// Under the rule "intersection-union" a claim that needs all of its tests is not corrected and gains power,
-// but the number of single significant tests is counted after Holm.
+// Under the rule "intersection-union" a claim that needs all of its tests is not corrected and gains power.
+// The number of single significant tests is still counted after Holm.
 TEST(Power, SupportIsJudgedByThePlansRule) {
   auto request = task2({"effect"}, 400);
   request.effect = 0.75;
@@ -177,7 +177,7 @@ TEST(Power, WholeScoresLieNearTheFormulas) {
   auto request = task1({"effect"}, 600);
   request.effect = 0.6;
   request.answers = study::AnswerScale::Likert;
-  // Rounding to whole points and the scale's ends change the power by up to this much at 26 people.
+  // Rounding to whole points and the ends of the scale change the power at 26 people by at most this.
   expect_closed_forms(study::simulate_task_power(request), 0.03);
 }
 

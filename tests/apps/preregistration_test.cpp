@@ -49,7 +49,7 @@ study::ProtocolRow row_of(const study::Protocol& protocol) {
   return row;
 }
 
-/// Both tasks answered under these protocols, analysed under the bundle's plan.
+/// Answers to both tasks under these protocols, analysed under the bundle's plan.
 struct Study {
   std::vector<study::ProtocolRow> rows;
   study::Json results;

@@ -38,7 +38,8 @@ TEST(ProgramE2e, AChoiceOfTheUsersStays) {
   EXPECT_THAT(openmp_settings("GOMP_SPINCOUNT", "77"), HasSubstr("GOMP_SPINCOUNT = '77'"));
 }
 
-/// Expects this text on stderr and exit status 1 if a program's command throws this.
+/// Expects that a program whose command calls `thrower` prints text like `pattern` on stderr and exits with
+/// status 1.
 void expect_said(const std::function<void()>& thrower, const std::string& pattern) {
   const auto run = [&] {
     ::setenv("OMP_WAIT_POLICY", "passive", 1);  // so that the program does not restart itself

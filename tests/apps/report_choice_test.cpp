@@ -70,7 +70,8 @@ study::TaskProtocol pilot_of_two_questions() {
   return out;
 }
 
-/// Everything is on one page, each number is in the JSON, and each session is in a flow.
+/// Checks that everything is on one page, each number is in the JSON, and each session is in a flow of
+/// participants.
 void expect_true_page(const study::Json& json) {
   const auto page = html_reader::read(study::report::results_page(json));
   EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());

@@ -56,7 +56,7 @@ std::size_t count_fields(const html_reader::Page& page) {
   return n;
 }
 
-/// Changes every number and every text that is no code.
+/// Changes every number, and every text with a space, so that codes stay.
 OrderedJson changed(OrderedJson json) {
   if (json.is_number()) {
     const double number = json.get<double>();

@@ -42,7 +42,7 @@ class SalvageCommandE2e : public ::testing::Test {
 
   Ended salvage() const { return Process({vip_study, "salvage", "--db", database_, "--into", made_}).wait(); }
 
-  /// Expects all answers, in any rows.
+  /// Expects all answers, whatever their rows' numbers.
   void expect_all_answers() const {
     const Answers found = answers_in(made_);
     ASSERT_EQ(found.size(), given_.size());

@@ -47,7 +47,7 @@ TEST(SettingPrice, IsTheRowOfExactlyThisSettingBesideHiRes) {
   EXPECT_EQ(prices.found[0].row->setting[sim::SolverKnob::Iterations], 8);
   ASSERT_NE(prices.found[0].hires, nullptr);
   EXPECT_EQ(prices.found[0].hires->setting, hires_at(512));
-  // The usual HiRes takes 10 to 17 ms, this one 14 to 21.
+  // A frame of the usual HiRes takes 10 to 17 ms, a frame with 8 projections 14 to 21 ms.
   EXPECT_DOUBLE_EQ(prices.found[0].row->ms_mean - prices.found[0].hires->ms_mean, 4);
   EXPECT_THAT(lines(prices), AllOf(HasSubstr("17.50 ms a frame"), HasSubstr("(the solver alone)"),
                                    HasSubstr("1.30 times the time of HiRes at n_* 512 (13.50 ms)"),
@@ -75,7 +75,7 @@ TEST(SettingPrice, SaysWhichKnobsDifferWhereNoRowIsTheSetting) {
               HasSubstr("no table of this scene file"));
 }
 
-// If beta follows the frame rate, no row of the sweep has the same beta.
+// A beta that follows the frame rate equals the beta of no row of the sweep.
 TEST(SettingPrice, ABetaThatFollowsTheFrameRateIsNoRowsBeta) {
   auto cells = small_sweep();
   auto accelerated = sim::usual_setting("SingleDam", sim::MethodKind::OursTsp, 512);
@@ -152,7 +152,7 @@ std::string without_scene(const sim::SolverSetting& setting) {
   return text.substr(text.find(' '));
 }
 
-// vip-view's panel and printed lines describe this setting.
+// The setting that vip-view shows in its panel and prints.
 TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   const ::test::TemporaryFolder folder;
   base::write_file_atomically(folder / "dam.toml", test::small_dam);

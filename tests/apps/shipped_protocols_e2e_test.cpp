@@ -25,7 +25,8 @@ using ::testing::IsEmpty;
 
 const std::filesystem::path protocols = std::filesystem::path(VIP_TEST_DIR).parent_path() / "protocols";
 
-/// Two people for each level of a between-subject factor of studies with a plan.
+/// Four people for a study with a plan, two for each level of its between-subject factor; three for other
+/// studies.
 int people_of(const std::string& protocol) {
   return std::filesystem::exists(protocols / "plans" / (protocol + ".toml")) ? 4 : 3;
 }
@@ -34,14 +35,14 @@ struct Walk {
   std::string protocol, observer;
 };
 
-/// The part of the test's name that tells one Walk from another.
+/// Part of the test's name that differs between Walks.
 std::string name_of(const Walk& walk) {
   return walk.protocol + (walk.observer == "random" ? "_left_out" : "");
 }
 void PrintTo(const Walk& walk, std::ostream* out) { *out << name_of(walk); }
 
-/// Each protocol with an observer whose answers count; one also with an observer whose answers are all
-/// excluded by the rules.
+/// Each protocol with an observer whose answers count. One protocol also with an observer all of whose
+/// answers the rules exclude.
 std::vector<Walk> walks() {
   std::vector<Walk> out{{"task2_lab", "random"}};
   for (const auto& entry : std::filesystem::directory_iterator(protocols)) {

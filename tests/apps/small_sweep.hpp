@@ -9,7 +9,7 @@
 
 namespace apps::test {
 
-/// A run of two samples with these values.
+/// A run of two samples with these values, and of eight frames that take `ms` to `ms` + 7 ms.
 inline study::CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
   study::CellRun out;
   for (const double time : {0.1, 0.2}) {
@@ -33,7 +33,7 @@ inline sim::SolverSetting hires_at(std::int64_t n_star) {
   return sim::usual_setting("SingleDam", sim::MethodKind::HiRes, n_star);
 }
 
-/// The reference with two seeds, HiRes with default settings and with twice the projections, two seeds each.
+/// Two runs each of the reference, of HiRes with usual settings, and of HiRes with eight projections.
 inline std::vector<study::StoredCell> small_sweep(std::int64_t n_star = 512) {
   const auto reference = study::reference_setting("SingleDam", n_star);
   auto eight = hires_at(n_star);

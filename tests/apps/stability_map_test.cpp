@@ -13,8 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Two cases and two methods: one limit found, one case that fails at its own numbers, one that is not for
-/// LoRes.
+/// Two cases and two methods: a limit that was found, a case that fails at its own numbers, and a case that
+/// is not for LoRes.
 measure::StabilityMap small_map() {
   measure::StabilityMap out{.cases = {"S1", "S9"},
                             .methods = {"LoRes", "Ours"},

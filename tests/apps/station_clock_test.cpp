@@ -128,7 +128,7 @@ TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
 }
 
 TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
-  // In the first case the earlier rows are older than the bundle; in the second, both times are possible.
+  // In the first case the earlier rows are older than the bundle. In the second case both times are possible.
   const std::pair<const char*, const char*> cases[] = {{"1969-12-31T23:00:00Z", "2025-01-01T00:00:00Z"},
                                                        {"2025-01-01T00:00:00Z", "2999-01-01T00:00:00Z"}};
   for (const auto& [told, not_before] : cases) {
@@ -142,7 +142,7 @@ TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
   }
 }
 
-// A correction of the clock by a second is no contradiction.
+// A correction of the clock by five seconds is no contradiction.
 TEST(StationClock, ASmallStepIsNoContradiction) {
   const auto check = compared("2025-01-01T00:00:00Z", "2025-01-01T00:00:05Z");
   EXPECT_EQ(check.at("times").at(0).at("frozen_before"), false);

@@ -19,7 +19,7 @@ class StimulusFolderE2e : public ::testing::Test {
     const std::string scene = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
     base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
   }
-  /// One setting, trials of half a second; `more` comes first in the file.
+  /// One setting for each method, and trials of half a second. `more`: further keys of the protocol's head.
   void write_protocol(const std::string& methods, const std::string& more = "") {
     base::write_file_atomically(
         protocol_, with_before(with_keys(short_protocol("0.5"), {{"scene", "[\"" + scene_ + "\"]"},

@@ -125,8 +125,8 @@ TEST(SweepPictures, WithoutPicturesNothingIsSaidOfThem) {
 const study::SweepPlan plan{.n_star = 512, .kept = "32x32"};
 const study::SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
 
-/// A run whose front (m) and kinetic energy (J/kg) are `off` larger than those of the reference, with frames
-/// of `ms`.
+/// A run whose front (m) and kinetic energy (J/kg) are larger by `off` than those of the reference, with
+/// frames of `ms`.
 study::CellRun water(double off, double ms, const study::CellRun& seen) {
   study::CellRun out = seen;
   out.samples.push_back({.time_s = 0.1, .front_m = 5 + off, .kinetic_j_kg = 10 + off});

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A program that runs a cell.
+/// A running program that computes a cell.
 struct Worker {
   pid_t pid = 0;
   fs::path shard;
@@ -35,7 +35,7 @@ class SweepWorkflowE2e : public test::TableTest {
              "/scripts/sweep.smk --cores 2 " + arguments + " bin=" VIP_BIN_DIR " out=out >>log 2>&1"},
         [] { ::setsid(); });
   }
-  /// Uses settled states and locks of this test only.
+  /// Settled states and locks are those of this test alone.
   std::string environment() const {
     const std::string own = folder.path().string();
     return "env -u DISPLAY OMP_NUM_THREADS=2 VIP_CACHE_DIR= VIP_LOCK_DIR=" + own + " XDG_CACHE_HOME=" + own +

@@ -95,7 +95,7 @@ TEST(Table1Masks, TheSalientFifthIsRankedByFAndLeavesTheFoveaOut) {
   picture.width = 10;
   picture.height = 5;
   picture.front.assign(50, sim::GBuffer::no_particle);
-  // Ten pixels of fluid in the G-buffer's lowest row, which is the mask's last.
+  // Ten pixels of fluid in the G-buffer's first row, the lowest of the picture, which is the mask's last row.
   for (std::uint32_t x = 0; x < 10; ++x) picture.front[x] = x;
   std::vector<int> ids;
   std::vector<float> by_id(10);

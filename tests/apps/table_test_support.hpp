@@ -45,7 +45,7 @@ inline void make_quick_share(const std::filesystem::path& share) {
   }
 }
 
-/// Runs programs on one thread, without a display or stored states; water settles for few frames.
+/// Runs programs on one thread, without a display and without stored states. Water settles for few frames.
 class TableTest : public ::testing::Test {
  protected:
   TableTest() { make_quick_share(share.path()); }

@@ -30,7 +30,7 @@ const study::Json& whole_study() {
   return json;
 }
 
-/// Dotted names of all fields; a list counts as its first element.
+/// Names of all fields, such as "a.b". A list counts as its first element.
 void names_of(const study::Json& json, const std::string& prefix, std::set<std::string>& names) {
   if (json.is_array() && !json.empty() && json[0].is_object()) return names_of(json[0], prefix + "[]", names);
   if (!json.is_object()) return;
