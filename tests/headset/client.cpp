@@ -15,7 +15,7 @@ namespace {
 
 PFN_xrGetInstanceProcAddr loader() {
   static void* const library = dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw std::runtime_error("no libopenxr_loader.so.1");
+  if (!library) throw std::runtime_error("no libopenxr_loader.so.1; install libopenxr-loader1");
   return reinterpret_cast<PFN_xrGetInstanceProcAddr>(dlsym(library, "xrGetInstanceProcAddr"));
 }
 

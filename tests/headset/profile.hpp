@@ -47,7 +47,8 @@ struct Profile {
   bool hash = false;         ///< the frame log has hashes of the images
 };
 
-/// Reads VIP_XR_PROFILE; std::invalid_argument for an unknown key or value.
+/// Reads VIP_XR_PROFILE. std::invalid_argument for an unknown key or value, std::out_of_range for an unknown
+/// format.
 Profile read_profile();
 
 }  // namespace simulated

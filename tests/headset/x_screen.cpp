@@ -42,7 +42,7 @@ void XScreen::start(const std::string& size) {
   int number = 0;
   const bool tells = std::fscanf(in, "%d", &number) == 1;
   std::fclose(in);
-  if (!tells) throw std::runtime_error("Xvfb does not start");
+  if (!tells) throw std::runtime_error("Xvfb does not start; install xvfb");
   name_ = ":" + std::to_string(number);
 }
 

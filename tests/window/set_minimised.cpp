@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   Display* const display = XOpenDisplay(nullptr);
   const Window window = display && argc == 3 ? find_window(display, argv[1]) : 0;
   if (window == 0 || (wish != "yes" && wish != "no")) {
-    std::fprintf(stderr, "set-minimised: no display, no window of that title, or not TITLE yes|no\n");
+    std::fprintf(stderr, "set-minimised: needs TITLE yes|no, and a window with this title on $DISPLAY\n");
     return 1;
   }
   const Atom wm_state = XInternAtom(display, "WM_STATE", False);
