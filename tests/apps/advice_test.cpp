@@ -148,13 +148,13 @@ std::vector<std::string> own_programs(const std::string& path) {
   return programs;
 }
 
-/// Errors in the advice of one text; empty: none.
+/// Errors in the advice of one text; empty if there are none.
 std::vector<std::string> wrong_advice(const Programs& known, const std::string& path,
                                       const std::string& text) {
   static const std::regex named(
       R"((vip-(?:study|stats|bench|view))((?: [a-z][a-z0-9-]*)?)|(--[a-z][a-z0-9-]*[a-z0-9]))");
   std::vector<std::string> wrong;
-  std::string command;  // last one named in this sentence
+  std::string command;  // the command named last in this sentence
   std::size_t end = 0;
   for (std::sregex_iterator at(text.begin(), text.end(), named), none; at != none; ++at) {
     const auto& match = *at;

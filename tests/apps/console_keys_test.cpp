@@ -321,7 +321,7 @@ TEST_F(ConsoleTest, TellsTheTimeLeftByWhatWasMeasured) {
 
 TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   const study::OpenUnit& trial = first_trial();
-  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial), 3 + 10 + 5);  // black 3, stimulus 10, one question
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial), 3 + 10 + 5);  // s: black, stimulus, one question
   double sum = 0;
   for (const auto& unit : session().units) sum += study::expected_s(protocol_, unit);
   EXPECT_DOUBLE_EQ(study::expected_s(protocol_, session().units), sum);

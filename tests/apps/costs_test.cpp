@@ -23,7 +23,7 @@ constexpr std::int64_t n_star = 16 * 1024;
 
 std::string sha256_of_dam() { return sim::scenes_of("SingleDam").front().scene.sha256; }
 
-/// Sessions whose record says that they showed all scene files live.
+/// Sessions whose recorded stimulus names all scene files as shown live.
 study::TaskProtocol shown_live() {
   auto out = made_study::task1(6);
   std::string stimulus = "live on cpu";

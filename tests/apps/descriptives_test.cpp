@@ -12,8 +12,8 @@
 namespace apps {
 namespace {
 
-/// Six people judge all pairs, half of them in the other order. Answer "better" is 1 if HiRes is shown first,
-/// else 7. Answer "three" is always 2, "the second one", of three.
+/// Six people judge all pairs, each pair in either order by three people. Answer "better" is 1 if HiRes is
+/// shown first, else 7. Answer "three" is always 2, "the second one", of three.
 study::TaskData rated_pairs() {
   auto pairs = made_study::task2(6);
   pairs.questions.push_back(made_study::scale("better", 1, 7));

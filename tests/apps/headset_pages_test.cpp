@@ -37,7 +37,8 @@ study::HeadsetPose head(double yaw_deg, double pitch_deg) {
   return pose;
 }
 
-/// Degrees between two places on a page, in metres from its middle, for an eye in front of it.
+/// Degrees between two places on a page for an eye `distance` m in front of its middle. The places are in m
+/// from the middle.
 double degrees_between(double x1, double y1, double x2, double y2, double distance) {
   const double dot = x1 * x2 + y1 * y2 + distance * distance;
   const double one = std::sqrt(x1 * x1 + y1 * y1 + distance * distance);

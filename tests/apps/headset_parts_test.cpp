@@ -110,7 +110,7 @@ TEST(HeadsetViews, LookAlongTheirPose) {
   EXPECT_NEAR(left[2], 0, 1e-6);
 }
 
-/// The renderers' view, in a scene whose camera is at the room's origin and looks along it.
+/// The renderers' view in a scene whose camera is at the room's origin and looks along -z.
 sim::View seen_by(const study::HeadsetEye& eye) {
   sim::Camera camera;
   camera.eye_m = {0, 0, 0};
@@ -176,7 +176,7 @@ TEST(HeadsetWatch, ACallThatComesBackIsDone) {
 TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
   std::promise<void> freed;
   const auto wait = freed.get_future().share();
-  // Completes when the thread releases the call, whether or not it had started it.
+  // The future is ready once the thread has destroyed the call, whether or not the call has begun.
   auto held = std::make_shared<std::promise<void>>();
   const auto let_go = held->get_future();
   {

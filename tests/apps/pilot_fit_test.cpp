@@ -356,7 +356,7 @@ TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& point : lines[0]) EXPECT_NEAR(point.mu + point.delta, 3.2, 1e-12);
   EXPECT_NEAR(std::abs(lines[0].front().delta - lines[0].back().delta), 2.8, 1e-12);
-  // A missing node removes its four cells.
+  // A missing node removes the four cells around it.
   grid.nodes[5].reset();
   for (const auto& line : study::contour_polylines(grid, 3.2)) {
     for (const auto& point : line) EXPECT_TRUE(point.mu >= 2 - 1e-12 || point.delta >= 2 - 1e-12);

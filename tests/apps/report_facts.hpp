@@ -15,8 +15,8 @@ using Change = std::function<void(Json&)>;
 /// A fact and the changes of the results that begin and end it. A sentence rests on the fact if it is on the
 /// page while the fact holds and not after its end. A clause before a semicolon counts as a sentence.
 struct Fact {
-  int sentences;     ///< number that rest on it; those that differ only in values count once
-  std::string word;  ///< occurs in one of them, and not in the text that replaces it
+  int sentences;     ///< number that rest on the fact; sentences that differ only in values count once
+  std::string word;  ///< occurs in one of these sentences, and not in the text that replaces it
   Change ends;
   Change begins = [](Json&) {};  ///< applied to a study with a pilot and both tasks
 };

@@ -40,7 +40,7 @@ study::TaskProtocol pilot_of_people(int participants = 8) {
   return pilot;
 }
 
-// A case that a new user had: one trial excluded by hand, one whose showing was cut.
+// One trial is excluded by hand, and the showing of another trial failed.
 TEST(ReportPilot, WhatWasLeftOutByHandAndByRuleIsListed) {
   auto pilot = pilot_of_people();
   EXPECT_THAT(results_of({{pilot}, 0}).at("exclusions"), IsEmpty());
@@ -210,7 +210,7 @@ TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
   EXPECT_EQ(count_of(terminal_of(pilot), ", no upper bound]"), on_terminal);
 }
 
-// The same holds for infinite ends of an interval, which JSON cannot represent as numbers.
+// JSON has no infinite number, so an infinite end of an interval is a word in the results.
 TEST(ReportPilot, AnInfiniteEndIsAWordInTheResultsAndSaidOnThePage) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   study::Json estimate;

@@ -125,7 +125,7 @@ inline std::vector<std::string> wrong_references(const html_reader::Page& page) 
   return wrong;
 }
 
-/// The document, then the separate ones inside it.
+/// The document itself, then those in its list `apart`.
 inline std::vector<const Json*> documents(const Json& json) {
   std::vector<const Json*> out{&json};
   if (json.contains("apart"))

@@ -243,7 +243,8 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   };
   fs::permissions(folder_.path(), fs::perms(0555));
   expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
-  // By default only the owner may read both. A user who may not read the journal cannot know who withdrew.
+  // By default only the owner may read the database and its journal. A user who may not read the journal
+  // cannot know who withdrew.
   fs::permissions(database_, fs::perms(0444));
   expect_error({vip_study, "status", "--db", database_}, "study.db.answers.jsonl: cannot be read",
                become_nobody);

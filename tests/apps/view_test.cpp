@@ -75,7 +75,7 @@ TEST_F(ViewE2e, ASoundRunTellsOfNoGuard) {
   EXPECT_EQ(outcome.out.find("first trouble"), std::string::npos) << outcome.out;
 }
 
-// Half plates that together close the tank leave the water above them no way out but through the gaps.
+// Two plates that together close the tank move down into the water, which can escape only through the gaps.
 TEST_F(ViewE2e, ARunInWhichAGuardStepsInEndsWithOneLineOnStandardError) {
   std::string text = apps::test::small_dam;
   const auto put = [&](const std::string& from, const std::string& to) {

@@ -240,7 +240,7 @@ class WithdrawalBytes : public ::testing::Test {
 
 TEST_F(WithdrawalBytes, OfThePersonAreNowhereAndOfAllOthersAsTheyWere) {
   auto telling = traces(leaver);
-  ASSERT_EQ(telling.size(), 3u);  // two sessions of one person
+  ASSERT_EQ(telling.size(), 3u);  // identifiers of two sessions and of the person
   for (std::string& one : telling) one.pop_back();
   telling.insert(telling.end(), {leaver, secret, stored(telling_ns), stored(telling_x), "0.123456789012345",
                                  stored(telling_place), "0.234567890123456", stored(telling_ipd)});
@@ -254,7 +254,7 @@ TEST_F(WithdrawalBytes, OfThePersonAreNowhereAndOfAllOthersAsTheyWere) {
   for (const std::string& one : telling) EXPECT_THAT(files_with(folder.path(), one), Not(IsEmpty())) << one;
   const auto others = kept_of_others(path);
   const auto older = content_of(first_version);
-  ASSERT_THAT(older, Contains(HasSubstr(code)));  // belongs to another person
+  ASSERT_THAT(older, Contains(HasSubstr(code)));  // the code of another person
 
   Connection reader(path, Open::Write);  // keeps a write-ahead log beside the database
   reader.integer("SELECT count(*) FROM session");

@@ -65,7 +65,7 @@ bool same(const XrFovf& a, const XrFovf& b) {
          near(a.angleDown, b.angleDown);
 }
 
-/// Refuses a view that has the pose or the field of view that was located for the other eye. All stored calls
+/// Refuses a view that has the pose or the field of view of the other eye and not its own. All stored calls
 /// of xrLocateViews count, because a program may submit an old image again with the pose for which it was
 /// drawn.
 void check_eye(const Session& session, const XrCompositionLayerProjection& layer, std::size_t eye) {

@@ -12,7 +12,8 @@ namespace simulated {
 namespace {
 
 [[noreturn]] void unknown(const std::string& text) {
-  throw std::invalid_argument("VIP_XR_PROFILE: " + text + " is not known; tests/headset/README.md lists the keys");
+  throw std::invalid_argument("VIP_XR_PROFILE: " + text +
+                              " is not known; tests/headset/README.md lists the keys");
 }
 
 std::vector<std::string> split(const std::string& text, char at) {

@@ -188,7 +188,8 @@ TEST(PlayTrial, RefusesBadSchedulesAndShortContent) {
   EXPECT_TRUE(brief.steps.empty());
 }
 
-/// Plays five frames of 20 ms that each take `cost_ns`, and are cut 50 ms past the planned end.
+/// Plays five frames of 20 ms. Each but the first takes `cost_ns`. The trial is cut 50 ms past its planned
+/// end.
 study::PlayedTrial played_at(std::int64_t cost_ns) {
   Stage stage;
   for (std::int64_t i = 1; i < 5; ++i) stage.stimulus.cost_ns[i] = cost_ns;

@@ -29,7 +29,7 @@ TEST(Personal, AnIndexWithoutItsRowsIsRefused) {
     constexpr std::size_t page_bytes = 4096, leaf_of_index = 0x0a;
     std::string bytes = base::read_file(path, 1 << 20);
     for (std::size_t page = page_bytes; page < bytes.size(); page += page_bytes)
-      if (bytes[page] == leaf_of_index) bytes[page + 3] = bytes[page + 4] = 0;  // its count of entries
+      if (bytes[page] == leaf_of_index) bytes[page + 3] = bytes[page + 4] = 0;  // the page's count of entries
     base::write_file_atomically(path, bytes);
   };
   expect_refused(empty_indices, "is damaged");

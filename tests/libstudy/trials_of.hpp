@@ -14,7 +14,7 @@ struct TrialOf {
   std::string participant, observer;
   TaskTrial trial;
 
-  /// The score of its first question.
+  /// Score of the answer to the trial's first question.
   std::optional<int> score() const { return trial.answers.at(0).score; }
 };
 

@@ -64,7 +64,7 @@ TEST(Power, AgreesWithTheReferenceAnswers) {
       expect_t_power(c);
     else if (op == "power.binom")
       expect_binomial_power(c);
-    else if (op != "power.t.n")  // an operation of other packs: the project does not solve for n
+    else if (op != "power.t.n")  // the project does not solve for n
       ADD_FAILURE() << c.at("id") << ": nobody tests " << op;
   }
 }

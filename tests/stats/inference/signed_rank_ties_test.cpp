@@ -65,7 +65,7 @@ struct AllSigns {
   std::vector<int> at_most;
 };
 
-/// One set of signs for each sum that they can have.
+/// One choice of signs for each sum of positive ranks that can occur.
 std::vector<std::size_t> one_of_each_sum(const AllSigns& all) {
   std::vector<std::size_t> out;
   std::vector<bool> seen(static_cast<std::size_t>(all.sums.back()) + 1);
@@ -119,7 +119,7 @@ TEST(SignedRankTiesSlow, ThePReportedIsThatOfAllSignsUpTo12Differences) {
   for (int n = 10; n <= 12; ++n) expect_exact_whatever_the_ties(n);
 }
 
-/// Number of orders of a sample with these counts.
+/// Number of different orders of a sample that has each value as often as `counts` says.
 double orders(const std::vector<int>& counts) {
   double log = 0;
   int n = 0;

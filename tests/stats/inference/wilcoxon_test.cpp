@@ -83,8 +83,7 @@ void expect_signed(const base::Json& c, const SignedRank& got) {
 TEST(Wilcoxon, Oracle) {
   for (const auto& c : oracle::cases("wilcoxon")) {
     const auto op = c.at("op").get<std::string>();
-    if (op == "mannwhitney")
-      continue;  // an operation of other packs: the project has no rank test of two groups
+    if (op == "mannwhitney") continue;  // the project has no rank test of two groups
     ASSERT_EQ(op, "wilcoxon.signed") << c.at("id");
     const auto got = signed_rank(oracle::numbers(c.at("input").at("d")));
     if (oracle::is_undefined(c)) {

@@ -28,7 +28,7 @@ constexpr double widest = 0.35;         // the default of vip-stats fit-ptpe --m
 
 /// An estimator's result for one pilot.
 struct One {
-  bool given = false;  ///< it has an interval and no doubts, so its file is written
+  bool given = false;  ///< it has an interval and raises no doubts, so its file is written
   double a = 0, b = 0;
   bool holds_a = false, holds_b = false;
 };
