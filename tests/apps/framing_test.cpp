@@ -201,7 +201,7 @@ TEST(EyeView, TwoEyesSeeATargetApartByItsDistance) {
 TEST(EyeView, TurnsWithTheHead) {
   study::EyeView eye = eye_at(0);
   const double half = std::atan(0.5) / 2;
-  eye.orientation = {0, std::sin(half), 0, std::cos(half)};                      // to the left
+  eye.orientation = {0, std::sin(half), 0, std::cos(half)};                      // turned to the left
   const auto met = study::place_in(study::eye_view(tilted(), eye), {-1, 2, 3});  // 4 m ahead, 2 m to the left
   ASSERT_TRUE(met);
   EXPECT_NEAR(met->first, 120, 1e-3);

@@ -376,7 +376,7 @@ TEST(PageState, NoAnswersBeforeTheConfirmation) {
 TEST(Viewing, ThePictureIsAWindowOntoTheScene) {
   // Height twice the distance: 45 degrees up and 45 down.
   EXPECT_NEAR(study::vertical_fov_deg(1200, 600), 90, 1e-12);
-  EXPECT_NEAR(study::vertical_fov_deg(2 * 700 * 0.57735026918962576, 700), 60, 1e-9);  // tan 30 degrees
+  EXPECT_NEAR(study::vertical_fov_deg(2 * 700 * 0.57735026918962576, 700), 60, 1e-9);  // 0.57... = tan 30 deg
   EXPECT_NEAR(study::picture_height_mm(531.2, 1920, 1080), 298.8, 1e-9);
 }
 

@@ -55,7 +55,8 @@ inline std::vector<Block> blocks_of(const base::Json& json) {
       if (next != '>' && next != ' ') continue;
       const auto from = html.find('>', at) + 1;
       const std::string inside = html.substr(from, html.find("</" + name + ">", from) - from);
-      if (inside.find("<a href") == std::string::npos) out.push_back(block_of(inside));  // not the contents
+      if (inside.find("<a href") == std::string::npos)
+        out.push_back(block_of(inside));  // not the table of contents
     }
   }
   return out;

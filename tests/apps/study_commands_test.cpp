@@ -213,7 +213,7 @@ TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
   EXPECT_EQ(done_in(database_), Units(said.begin(), said.end()));
   EXPECT_EQ(run_program({vip_study, "resume", "--db", database_}).exit_code, 0);
   const Answers after = answers_in(database_);
-  EXPECT_EQ(after.size(), 28u);  // six ratings each, and consent
+  EXPECT_EQ(after.size(), 28u);  // for each of four people: six ratings and the consent
   for (const auto& [key, answer] : before) EXPECT_EQ(after.at(key), answer);
 }
 

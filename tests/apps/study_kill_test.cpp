@@ -119,7 +119,7 @@ TEST(StudyKillE2e, FourteenInstantsOnTheVirtualClock) {
   };
   ASSERT_EQ(run_program(arguments(folder / "whole.db")).exit_code, 0);
   const auto whole = scores(answers_in(folder / "whole.db"));
-  ASSERT_EQ(whole.size(), 28u);  // six ratings each, and consent
+  ASSERT_EQ(whole.size(), 28u);  // for each of four people: six ratings and the consent
 
   std::mt19937 random(1);
   for (int kill = 0; kill < 14; ++kill) {

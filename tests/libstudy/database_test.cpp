@@ -158,7 +158,7 @@ TEST(Database, UpgradeKeepsACopyAndTheData) {
   const std::string before = test::bytes_of(path);
   EXPECT_EQ(open_database(path, Open::Read, steps)->integer("SELECT count(weather) FROM session"), 0);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // with the journal of answers
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // the database and its journal
   const auto upgraded = open_database(path, Open::Write, steps);
   EXPECT_EQ(upgraded->integer("PRAGMA user_version"), static_cast<std::int64_t>(steps.size()));
   EXPECT_EQ(upgraded->integer("SELECT count(*) FROM trial"), 21);
@@ -219,7 +219,7 @@ TEST(Database, ReadingLeavesNothingBehind) {
   const std::string before = test::bytes_of(path);
   EXPECT_EQ(test::trials_of(path).size(), 21u);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // with the journal of answers
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // the database and its journal
 }
 
 TEST(Database, Version1KeepsEveryAnswerAndEveryFrame) {

@@ -285,7 +285,7 @@ TEST_F(Stations, AWithdrawalReachesTheStationWithAllThatStandsBesideIt) {
     const std::string bytes = test::bytes_of(entry.path());
     EXPECT_EQ(bytes.find("zebra"), std::string::npos) << entry.path();
     if (entry.path().filename().string().starts_with("north")) {
-      EXPECT_EQ(bytes.find("north P02"), std::string::npos) << entry.path();  // the notes
+      EXPECT_EQ(bytes.find("north P02"), std::string::npos) << entry.path();  // including the notes
     }
   }
 }

@@ -123,7 +123,8 @@ std::string unzipped(const fs::path& path) {
 
 class GazeExport : public ::testing::Test {
  protected:
-  /// P01: eye tracker in the first presentation; P05: mouse; the refuser: mouse.
+  /// The first presentation of three people has gaze: P01's of an eye tracker, P05's and the refuser's of a
+  /// mouse.
   GazeExport() : path_(make_study(folder_)) {
     Store store(path_, Open::Write);
     const std::vector<GazeSample> samples{{10'000'000, 3, true, GazePoint{0.25, 0.5}},

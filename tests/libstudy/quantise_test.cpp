@@ -69,7 +69,7 @@ bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const double top = setting.sd + sd_tolerance(setting);
   const double floor = std::max(0.0, setting.sd - sd_tolerance(setting));
   // The arithmetic mean of the rates f exceeds their harmonic mean by a limited share: mean(f) / harmonic
-  // mean - 1 = -cov(f, 1/f) <= sd(f) sd(1/f).
+  // mean - 1 = -cov(f, 1/f) <= sd(f) sd(1/f). sd(1/f) is at most half the range of 1/f.
   const double reach = setting.mean * (1 + top * (longest - 1) / (2 * refresh_hz));
   const double spacing = 0.2;
   double least = std::numeric_limits<double>::infinity(), most = least;

@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 /// Runs `action` in a child process that ends without closing anything, as a killed process does. Returns the
-/// action's result.
+/// action's result, 99 if it throws.
 int in_child(const std::function<int()>& action) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -139,7 +139,8 @@ class Salvaging : public ::testing::Test {
   std::string bytes, journal;
 };
 
-/// Step of the fast tests. The slow tests damage every page and cut at every page's end.
+/// The fast tests destroy every fifth page and cut at the end of every fifth page; the slow tests take all
+/// pages.
 constexpr std::size_t some = 5;
 class SalvagingSlow : public Salvaging {};
 
@@ -217,11 +218,11 @@ TEST_F(Salvaging, WhatIsInTheLogIsFoundAndALostLogIsMadeUpForByTheJournal) {
   const Salvage sound = salvage(folder / "kept.db", folder / "1.db");
   EXPECT_TRUE(sound.sound);
   EXPECT_EQ(test::answers_of(folder / "1.db"), all);
-  // The log is missing, but the journal has the answers.
+  // SQLite's write-ahead log is missing, but the journal has the answers.
   const Salvage lost = salvage(folder / "lost_log.db", folder / "2.db");
   EXPECT_EQ(test::answers_of(folder / "2.db"), all);
   EXPECT_EQ(lost.answers_journal, 2);
-  // Only the log is left, without the database file.
+  // Only the write-ahead log is left, without the database file.
   fs::remove(folder / "kept.db");
   salvage(folder / "kept.db", folder / "3.db");
   EXPECT_EQ(test::answers_of(folder / "3.db"), all);

@@ -18,7 +18,7 @@
 
 namespace study::test {
 
-/// The same stimulus without pictures for all cells. Records the methods of the cells.
+/// Returns the same stimulus, which draws nothing, for all cells. Records the methods of the cells.
 class NullStimuli final : public StimulusSource {
  public:
   explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
@@ -32,7 +32,7 @@ class NullStimuli final : public StimulusSource {
   NullStimulus stimulus_;
 };
 
-/// The parts that a session on the virtual clock needs.
+/// The parts of a session on the virtual clock, except the participant and the store.
 struct Desk {
   explicit Desk(const Protocol& protocol) : stimuli(protocol.content.content_step_s) {}
   SessionParts parts(Participant& participant, Store& store) {

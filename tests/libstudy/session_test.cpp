@@ -88,8 +88,8 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   for (bool done = false; !done;) {
     Store store(folder / "cut.db", Open::Write);
     try {
-      // The number of frames grows, so that stops fall into pauses, first frames and later frames of
-      // different trials.
+      // The number of frames before the stop grows, so that stops fall into pauses, first frames and later
+      // frames of different trials.
       play(store, protocol, 1009 + 37 * stops);
       done = true;
     } catch (const Stopped&) {
@@ -104,7 +104,7 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   // Frames of cut showings stay, and a trial is shown again only while it has no answer.
   const auto cut = look.integer("SELECT count(*) FROM presentation WHERE state = 'interrupted'");
   EXPECT_GT(cut, 5);
-  EXPECT_LE(cut, stops);  // a stop in a pause cuts nothing
+  EXPECT_LE(cut, stops);  // a stop in a pause interrupts no showing
   EXPECT_EQ(look.integer("SELECT count(*) FROM presentation p WHERE state = 'interrupted' AND NOT EXISTS "
                          "(SELECT 1 FROM frame f WHERE f.presentation_id = p.presentation_id)"),
             0);

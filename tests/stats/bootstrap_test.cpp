@@ -10,7 +10,7 @@
 namespace {
 
 TEST(ResampleWeights, AreEqualOnEveryMachine) {
-  // Fixed values, so that an interval in a paper can be reproduced.
+  // The weights must not change, so that an interval in a paper can be reproduced.
   EXPECT_EQ(stats::resample_weights(6, 1, 0), (std::vector<double>{0, 0, 2, 0, 2, 2}));
   EXPECT_EQ(stats::resample_weights(6, 1, 1), (std::vector<double>{0, 1, 3, 2, 0, 0}));
 }
@@ -27,15 +27,15 @@ TEST(ResampleWeights, DrawEachUnitAlikeAndIndependently) {
       squares += (weights[unit] - 1) * (weights[unit] - 1);
     }
   }
-  // A count is Binomial(n, 1/n): mean 1, variance 1 - 1/n; bounds are five standard errors.
+  // A count is Binomial(n, 1/n): mean 1, variance 1 - 1/n. The bounds of the means are five standard errors.
   const double variance = 1 - 1.0 / n;
   for (const double sum : sums) EXPECT_NEAR(sum / resamples, 1, 5 * std::sqrt(variance / resamples));
   EXPECT_NEAR(squares / (n * resamples), variance, 0.02);
 }
 
 TEST(ExpandedPercentile, CoversTheMeanOfFewNormalsAsTDoes) {
-  // For a mean the resampled estimates are normal with sd sqrt((n-1)/n) s / sqrt(n): the expanded interval is
-  // then mean -+ t s / sqrt(n).
+  // The resampled means of n values with the variance s are nearly normal with the variance (n - 1) / n s /
+  // n. So the expanded interval is about mean -+ t sqrt(s / n), where t has n - 1 degrees of freedom.
   constexpr int n = 8;
   const std::vector<double> x{3.1, -0.4, 1.7, 2.2, 0.3, 1.1, 4.0, 2.6};
   std::vector<double> means;

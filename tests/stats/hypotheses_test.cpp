@@ -232,7 +232,7 @@ TEST(Hypotheses, OnePersonIsNoData) {
   }
 }
 
-/// Everybody rates the methods alike, up to a level of their own: the differences have no spread.
+/// Person p rates a method with its mean plus p % 3, so the differences between methods are the same for all.
 std::vector<Hypothesis> unanimous_verdicts(const std::vector<double>& realism,
                                            const std::vector<double>& sickness, int n,
                                            const AnalysisPlan& plan = {}) {

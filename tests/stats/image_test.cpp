@@ -33,7 +33,7 @@ Image noise(int width, int height, std::uint32_t seed) {
   return out;
 }
 
-/// A slope plus noise of 0 to 31.
+/// A slope plus noise of 0 to 31, modulo 256.
 Image rough(const Image& noise_image) {
   Image out = noise_image;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
@@ -202,7 +202,7 @@ std::vector<double> gaussian_means(const std::vector<double>& values, int width,
 }
 
 TEST(Ssim, BandsOfRowsChangeNoValue) {
-  // The pictures have several bands, and the last band is not full.
+  // ssim_map() works in bands of 24 rows. These pictures have several bands, and the last band is not full.
   constexpr int width = 47, height = 131;
   const Image a = rough(noise(width, height, 7));
   const Image b = rough(noise(width, height, 8));
@@ -238,7 +238,7 @@ TEST(Ssim, MasksTheMapAndNotThePictures) {
   const auto map = stats::ssim_map(a.view(), b.view());
   std::vector<std::uint8_t> mask(900, 0);
   mask[12 * 30 + 17] = 1;
-  mask[3 * 30 + 3] = 1;  // at the border, which has no index
+  mask[3 * 30 + 3] = 1;  // within 5 pixels of the border, where the map has no index
   const auto score = map.mean(mask);
   EXPECT_EQ(score.pixels, 1u);
   EXPECT_DOUBLE_EQ(score.value, map.index[(12 - 5) * 20 + 17 - 5]);
@@ -270,7 +270,7 @@ TEST(Flip, EitherPictureMayComeFirst) {
   EXPECT_EQ(stats::flip(a.view(), b.view(), 30).value, stats::flip(b.view(), a.view(), 30).value);
 }
 
-// An eye does not resolve single pixels at 67 a degree: noise averages out.
+// At 67 pixels per degree an eye does not resolve single pixels, so noise averages out.
 TEST(Flip, FineNoiseIsSeenLessThanCoarse) {
   const Image a = rough(noise(40, 30, 1)), b = rough(noise(40, 30, 2));
   EXPECT_LT(stats::flip(a.view(), b.view(), 67).value, 0.5 * stats::flip(a.view(), b.view(), 10).value);

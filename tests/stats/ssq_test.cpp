@@ -37,7 +37,7 @@ TEST(Ssq, AllThreesGiveThePublishedMaxima) {
 }
 
 TEST(Ssq, EveryItemCountsWhereKennedyPutsIt) {
-  // Symptom, then N, O, D as marked in the paper's table 4.
+  // One row per symptom: 1 if the paper's table 4 marks it for nausea, oculomotor symptoms or disorientation.
   const int marks[ssq_item_count][3] = {{1, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 1}, {1, 0, 0},
                                         {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 0, 1}, {0, 1, 1}, {0, 0, 1},
                                         {0, 0, 1}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}};
@@ -77,7 +77,7 @@ AnalysisPlan quick_plan() {
 TEST(SicknessChange, ComparesThoseWithBothAndDescribesAll) {
   const std::vector<ExactMean> before{{0}, {1}, {2}, {missing}, {4}}, after{{1}, {1}, {6}, {9}, {missing}};
   auto plan = quick_plan();
-  plan.confidence = 0.7;  // three values support no higher level
+  plan.confidence = 0.7;  // the interval of three signed ranks has at most the level 0.75
   const auto change = compare_sickness(before, after, 2, plan);
   EXPECT_EQ(change.n, 3u);
   EXPECT_EQ(change.n_missing, 2u);

@@ -120,7 +120,7 @@ TEST(ShareTest, IsExactByGoingThroughAllSigns) {
     std::vector<PersonChoices> people;
     for (std::size_t i = 0; i < 2 + static_cast<std::size_t>(sample) % 6; ++i)
       people.push_back(kinds[(static_cast<std::size_t>(sample) * (2 * i + 3) / (i + 2) + i) % kinds.size()]);
-    int seen = 0;  // twice the sum, in sixths
+    int seen = 0;  // sum of k / n - 1/2 over people, in twelfths
     std::vector<int> values;
     for (const auto& one : people) {
       values.push_back((2 * one.k - one.n) * (6 / one.n));

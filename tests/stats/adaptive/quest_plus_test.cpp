@@ -115,7 +115,8 @@ TEST(QuestPlus, FollowsWatsonsMeanAndDeviation) {
 }
 
 TEST(QuestPlus, ParametersOutsideTheInterestDoNotSteerTheChoice) {
-  // Stimulus 0 shows parameter A, stimulus 1 shows B more clearly. If only A is of interest, 0 is chosen.
+  // The answer to stimulus 0 depends on parameter A = p / 2, that to stimulus 1 more strongly on B = p % 2.
+  // If only A is of interest, 0 is chosen.
   const std::vector<double> prior(4, 1.0);
   const auto chance = [](int s, int p, int o) {
     const bool high = s == 0 ? p / 2 == 1 : p % 2 == 1;
@@ -158,7 +159,7 @@ TEST(QuestPlus, IntervalsCoverTheThresholdOfSimulatedPeople) {
     const GridEstimate estimate = grid_estimate(thresholds, quest.posterior());
     covered += estimate.low <= truth.threshold && truth.threshold <= estimate.high;
   }
-  // 95 % of 100 with a binomial error of 2.2: 88 is three errors below.
+  // Of 100 intervals 95 cover on average, with a standard deviation of 2.2. 88 is three of these below.
   EXPECT_GE(covered, 88);
   EXPECT_LE(covered, 100);
 }

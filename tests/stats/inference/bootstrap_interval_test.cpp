@@ -74,7 +74,8 @@ void expect_many_resamples(const json& c, const Values& x, const stats::Statisti
   if (want.contains("se")) {
     EXPECT_NEAR(got->se / want.at("se").get<double>(), 1, 0.04) << c.at("id");
   }
-  // The reference counts ties half; the standard error of z0 is 0.006.
+  // The reference counts a resample equal to the estimate as half below it. The standard error of z0 is
+  // 0.006.
   if (want.contains("z0")) {
     EXPECT_NEAR(got->bca.z0, want.at("z0").get<double>(), 0.04) << c.at("id");
   }

@@ -69,7 +69,7 @@ TEST(Power, AgreesWithTheReferenceAnswers) {
   }
 }
 
-// Figures for the paper's 26 participants.
+// Power for the paper's 26 participants, and the numbers of participants from which the power is 0.8.
 TEST(PaperNumbers, PowerOfTwentySixParticipants) {
   EXPECT_NEAR(stats::binomial_power(26, 0.70)->power, 0.46, 0.005);
   EXPECT_EQ(*stats::binomial_power(26, 0.70)->k_critical_upper, 19);

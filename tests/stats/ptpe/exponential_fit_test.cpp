@@ -16,7 +16,7 @@ namespace {
 using json = base::Json;
 using stats::fit_exponential;
 
-/// The answer with the names of the oracle.
+/// The fit, with the field names of the oracle's answers.
 json answer(const stats::ExponentialFit& fit, const json& expect) {
   json got{{"a", fit.a}, {"b", fit.b}, {"rss", fit.rss}, {"df", fit.df()}};
   if (fit.r2) got["r2"] = *fit.r2;

@@ -25,7 +25,7 @@ std::vector<stats::PilotRating> ratings_of(const std::vector<double>& rows) {
   return out;
 }
 
-/// `relative`: the precision of R's nls.
+/// `relative`: a relative tolerance, the precision of R's nls.
 void expect_interval(const std::array<double, 2>& got, double low, double high, double relative) {
   EXPECT_NEAR(got[0], low, relative * std::abs(low) + 2e-8);
   EXPECT_NEAR(got[1], high, relative * std::abs(high) + 2e-8);

@@ -19,7 +19,7 @@ namespace surfaces {
 inline constexpr double level = 4;
 inline const std::vector<double> rates{10, 20, 30, 40, 50}, deviations{0, 5, 10, 15, 20};
 
-/// A person's three standard normals.
+/// How a person differs from the population: three standard normal numbers.
 using Person = std::array<double, 3>;
 
 struct Population {

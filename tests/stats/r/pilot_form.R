@@ -33,7 +33,7 @@ fitted_bend <- function(rows, start) {
 control <- function(tol) nls.control(maxiter = 500, tol = tol, minFactor = 1e-12, nDcentral = TRUE)
 deviations <- c(0, 5, 10, 15, 20)
 
-# The surface of stats/ptpe/direct_fit.hpp, with delta in tens.
+# The surface of stats/ptpe/direct_fit.hpp, with d = delta / 10.
 direct_fit <- function(rows, start = NULL) {
   rows$d <- rows$delta / 10
   if (is.null(start)) {
@@ -45,8 +45,8 @@ direct_fit <- function(rows, start = NULL) {
 }
 along <- function(fit, delta) fit[["l"]] + fit[["b"]] * delta / 10  # log mu(delta)
 
-# The rows without the deviations at which the curve lies outside the frame rates shown; the three nearest deviations
-# always stay.
+# The rows without the deviations at which the curve lies more than 15 % outside the frame rates shown. The
+# three nearest deviations always stay.
 reached <- function(rows) {
   log_mu <- along(direct_fit(rows), deviations)
   shown <- sapply(deviations, function(delta) range(log(rows$mu[rows$delta == delta])))

@@ -27,7 +27,7 @@ json <- function(x) {
 gcd <- function(a, b) if (b == 0) a else gcd(b, a %% b)
 lcm <- function(v) Reduce(function(a, b) a / gcd(a, b) * b, unique(v), 1)
 stars <- function(p) if (is.na(p)) "" else if (p < 0.001) "***" else if (p < 0.01) "**" else if (p < 0.05) "*" else ""
-# Missing tests count as p = 1 in a family of that size.
+# Missing tests count as p = 1, so that the family keeps its size. Their own corrected p is missing.
 corrected <- function(p, how) { out <- p.adjust(ifelse(is.na(p), 1, p), how); out[is.na(p)] <- NA; out }
 constant <- function(x) length(x) > 1 && all(x == x[1])
 attempt <- function(value) tryCatch(suppressWarnings(value), error = function(e) NULL)
