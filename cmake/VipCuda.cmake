@@ -1,6 +1,7 @@
 # Decides whether the CUDA back end is built, and sets VIP_HAS_CUDA to ON or OFF. VIP_CUDA=AUTO builds the
-# back end only on a machine with an NVIDIA GPU, and for that GPU: nvcc takes as long as the rest of the
-# build, and its code cannot run without a GPU. VIP_CUDA=ON builds the back end on any machine.
+# back end only on a machine with an NVIDIA GPU and nvcc 12.0 or newer, by default for that GPU alone: nvcc
+# takes as long as the rest of the build, and its code cannot run without a GPU. VIP_CUDA=ON builds the back
+# end also without a GPU, and stops with an error if nvcc is missing or too old.
 set(VIP_HAS_CUDA OFF)
 set(_wanted ${VIP_CUDA})
 if(VIP_CUDA STREQUAL "AUTO")

@@ -1,4 +1,4 @@
-# Every switch of the build, in one place.
+# The switches of the build.
 option(VIP_TESTS "Build the tests" ON)
 option(VIP_WINDOW "Build the windows (GLFW, Dear ImGui)" ON)
 option(VIP_EFFECTS "Build the effects that scenes may list" ON)

@@ -199,7 +199,8 @@ function(vip_test_units target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# vip_library(NAME SOURCES...) adds a static library, vip_program(NAME SOURCES...) an installed program.
+# vip_library(NAME SOURCES...) adds a static library. vip_program(NAME SOURCES...) adds a program and its
+# installation.
 function(vip_library name)
   add_library(${name} STATIC ${ARGN})
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)

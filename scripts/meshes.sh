@@ -1,5 +1,7 @@
 #!/bin/sh
-# Computes the meshes of data/scenes/boat.toml from formulas and writes data/meshes/hull.obj and ring.obj.
+# Computes the meshes of data/scenes/boat.toml from formulas and writes them to FOLDER/hull.obj and
+# FOLDER/ring.obj.
+# usage: scripts/meshes.sh [FOLDER]    default: data/meshes
 set -eu
 out=${1:-$(dirname "$0")/../data/meshes}
 mkdir -p "$out"

@@ -5,8 +5,8 @@
 #   VARIANT  native (-march=native), o1 (-O1), threads-1, threads-3, threads-many (twice the cores); default: all
 #   PROGRAM  test program to build and run, such as sim_test; default: all tests that need neither GPU nor minutes
 #   FILTER   regular expression of test names; default: every one
-# The native and o1 variants are built in build/native and build/o1; the numbers of threads are tried with
-# build/dev. Logs go to out/other_machines.
+# The native and o1 variants are built in build/native and build/o1. The variants with other numbers of
+# threads use build/dev, which is built only if it does not exist. Logs go to out/other_machines.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 variants="native o1 threads-1 threads-3 threads-many" target=all
@@ -31,7 +31,7 @@ build() {  # build FOLDER FLAGS: builds the dev preset with these flags in place
   return 1
 }
 
-select_tests() {  # select_tests PROGRAM: prints a --gtest_filter for the tests whose names match the filter
+select_tests() {  # select_tests PROGRAM: prints the tests that match FILTER, except of suites *Gpu and *Slow, for --gtest_filter
   "$1" --gtest_list_tests | awk '/^[^ ]/ { suite = $1; next } { print suite $1 }' | grep -E -- "$filter" |
     grep -vE '^[^.]*(Gpu|Slow)\.' | paste -sd:
 }

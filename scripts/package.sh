@@ -11,7 +11,7 @@ skip() { echo "package: not tried: $*"; exit 77; }
 command -v debootstrap >/dev/null || skip "debootstrap is missing (apt-get install debootstrap)"
 command -v dpkg-shlibdeps >/dev/null || skip "dpkg-shlibdeps is missing (apt-get install dpkg-dev)"
 command -v file >/dev/null || skip "file is missing (apt-get install file)"
-grep -q '^VIP_NATIVE:BOOL=OFF' "$build/CMakeCache.txt" || skip "$build is for this processor alone (VIP_NATIVE)"
+grep -q '^VIP_NATIVE:BOOL=OFF' "$build/CMakeCache.txt" || skip "$build is missing or for this processor alone (VIP_NATIVE); run cmake --workflow --preset package"
 
 # Starts itself again in a mount namespace of its own, so that its mounts end with it.
 [ -n "${VIP_OWN_MOUNTS:-}" ] || exec env VIP_OWN_MOUNTS=1 unshare --mount "$0" "$build"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs clang-tidy with the checks of .clang-tidy on the C++ sources that changed since BASE, committed or not.
 # Every finding is an error.
-# usage: scripts/tidy.sh [BASE]           default: $VIP_TIDY_BASE, else the merge base with origin/main
+# usage: scripts/tidy.sh [BASE]           default: $VIP_TIDY_BASE, else the merge base with origin/main or
+# main
 #        scripts/tidy.sh --files FILE...  checks these sources
 # A header is checked through a source that includes it. Without --files at most $VIP_TIDY_MOST sources
 # (default: 16) are checked, which takes up to two minutes on two cores; the names of the other sources are

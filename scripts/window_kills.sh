@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Kills a person's session at the window with SIGKILL at KILLS random instants (SEED is the seed) and resumes
-# it after each kill. Then lets the disk fill in the middle of a trial of another session. Real key and mouse
-# events on a virtual screen answer the pages. Fails if an answer is lost or asked for twice, if a trial that
-# was cut is not marked and shown again, or if the database is damaged.
+# Kills a person's session at the window with SIGKILL at KILLS random instants and resumes it after each kill.
+# SEED is the seed of the random numbers. Then lets the disk fill in the middle of a trial of another session.
+# Real key and mouse events on a virtual screen answer the pages. Fails if an answer is lost or asked for
+# twice, if a trial that was cut is not marked and shown again, or if the database is damaged.
 # usage: scripts/window_kills.sh [FOLDER [KILLS [SEED]]]    default: out/window_kills 50 1
 # Takes vip-study from $VIP_STUDY, else from build/dev. Databases, events and logs go to FOLDER.
 set -euo pipefail
@@ -156,7 +156,7 @@ start_run() {
   start run "$out/$name.toml" --participant P01 --display window --gaze mouse --station test --screen-width-mm 520 \
     --viewing-distance-mm 600 --stimulus "$out/dam.bake" --seed "$seed"
 }
-sit() {  # sit SECONDS: answers pages until the process ends, at most so long; sets `ended` to its exit status
+sit() {  # sit SECONDS: answers pages until the process ends, and kills it after SECONDS; sets `ended` to its exit status
   local until=$((SECONDS + $1)) what kind
   while alive; do
     if [ $SECONDS -ge $until ]; then

@@ -42,7 +42,7 @@ until_shown() {  # until_shown STATE: waits until the showing of this session ha
   until [ "$(ask "select count(*) from presentation join trial using (trial_id) join session using (session_id) where participant = '$code' and presentation.state = '$1'")" = 1 ]; do sleep 0.1; done
 }
 to_stimulus() {  # goes on to the stimulus and waits until it has run for two seconds
-  until begun consent; do key Return; sleep 0.5; done  # ignored in the shortest reading time
+  until begun consent; do key Return; sleep 0.5; done  # the page ignores keys during its shortest reading time
   until_begins consent
   key 1 Return
   until_begins stimulus
@@ -95,7 +95,8 @@ until_shown played
 sleep 1
 finish
 expect "events without" "" "$(mirrored)"
-# The timing is printed and not checked, because it depends on the load. On a quiet machine both are alike.
+# The timing is printed and not checked, because it depends on the load. On a quiet machine the two lines are
+# alike.
 ask "select 'timing of ' || participant || iif(participant = 'P02', ' without', ' with') || ' the mirror: ' || verdict || ', ' || late_frames ||
   ' of ' || frames || ' frames late, worst ' || round(worst_late_ms, 2) || ' ms' from presentation join trial using (trial_id)
   join session using (session_id) where presentation.state = 'played' order by participant" | sed 's/^/        /'

@@ -21,7 +21,7 @@ NR == 1 {
   print escaped(substr($0, 8))
   next
 }
-/^ *\[/ {  # the heading of a group of options that depend on each other
+/^ *\[/ {  # the heading of a group of options
   gsub(/^ *\[(Option Group: )?|\]$/, "")
   if (/^formats|^[a-z ]+$/) section($0)
   else print ".PP\n" escaped($0)

@@ -1,5 +1,5 @@
 #pragma once
-/// Compares the documented keys of a file format with the keys for which its reader asks.
+/// Compares the documented keys of a file format with the keys that its reader looks up.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace test {
 
-/// How the reader asked for each key (type, range, choices, default), by the key's dotted name.
+/// How the reader looked up each key (type, range, choices, default), by the key's dotted name.
 using AskedKeys = std::map<std::string, std::vector<base::AskedKey>>;
 
 inline std::string name_of(const base::KeyReference& key) {

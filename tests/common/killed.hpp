@@ -10,7 +10,7 @@
 
 namespace test {
 
-/// Runs `work` in a child until it calls kill_here(). The test fails if the child ends in another way.
+/// Runs `work` in a child process, which must end by kill_here(). The test fails if no signal ends the child.
 template <class Work>
 void killed(const Work& work) {
   const pid_t child = ::fork();
@@ -28,7 +28,7 @@ void killed(const Work& work) {
   EXPECT_TRUE(WIFSIGNALED(status)) << "ended with exit status " << WEXITSTATUS(status);
 }
 
-/// Ends the work of killed().
+/// Kills the calling process with SIGKILL.
 inline void kill_here() { ::kill(::getpid(), SIGKILL); }
 
 }  // namespace test

@@ -46,7 +46,7 @@ inline std::string with_before(std::string text, const std::string& place, const
   return text.insert(found_in(text, place), more);
 }
 
-/// Sets keys, each on the first line that begins with it; that line's comment goes.
+/// Sets keys: replaces the first line that begins with each key, including the line's comment.
 inline std::string with_keys(std::string text,
                              std::initializer_list<std::pair<std::string, std::string>> keys) {
   for (const auto& [key, value] : keys) {
@@ -56,7 +56,7 @@ inline std::string with_keys(std::string text,
   return text;
 }
 
-/// Takes blocks and questions out by their ids; steps no longer ask such a question.
+/// Removes blocks and questions by their ids. Removed questions also leave the first "ask" step.
 inline std::string without(std::string text, std::initializer_list<std::string> ids) {
   for (const auto& id : ids) {
     const auto begin = text.rfind("[[block", found_in(text, "\nid = \"" + id + "\"\n"));
@@ -77,8 +77,8 @@ inline std::string short_protocol(const std::string& duration_s) {
                   "\"black 3\", ", "");
 }
 
-/// short_protocol() with these means, without spread and with a first page of one second instead of five. It
-/// is played although a display meets some means only approximately.
+/// short_protocol() with these mean frame rates, no spread, trials of 10 s and a first page that can be left
+/// after 1 s instead of 5 s. It is played although a display meets some means only approximately.
 inline std::string short_protocol_at(const std::string& means) {
   return with_keys(
       short_protocol("10"),
@@ -115,7 +115,8 @@ inline std::string asking_at_60(bool gaze = true) {
                                        {"language", "\"en\"\naccept_approximate = true"}});
 }
 
-/// Pairs after questions about the person and a practice trial; free words at the end.
+/// A protocol of pairs with questions about the person and a practice trial before them, and free words at
+/// the end.
 inline std::string pairs_text() { return without(protocol_text("pairs"), {"consent"}); }
 
 }  // namespace test

@@ -1,5 +1,5 @@
-/// Gives each test program, and the programs it starts, its own register of exports: tests never write into
-/// the user's home.
+/// Unless VIP_STATE_DIR is already set, gives each test program, and the programs that it starts, its own
+/// register of exports, so that tests do not write into the user's home.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ class StateFolder {
  public:
   StateFolder() { ::setenv("VIP_STATE_DIR", folder_->path().c_str(), 0); }
   ~StateFolder() {
-    if (::getpid() == maker_) delete folder_;  // an exiting child leaves it to its parent
+    if (::getpid() == maker_) delete folder_;  // a forked child must not delete its parent's folder
   }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace test {
 
-/// For each line, a map from the header's names to the values.
+/// For each line after the header, a map from the header's names to the line's values.
 using NamedRows = std::vector<std::map<std::string, std::string>>;
 
 /// Splits at `separator` outside quotes and removes the quotes.

@@ -16,7 +16,7 @@ inline std::filesystem::path memory_folder() {
   return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
 }
 
-/// A new folder in `where`. The destructor removes it with its contents, even if they are read-only.
+/// A new folder in `where`. The destructor makes it writable and removes it with its contents.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& where = std::filesystem::temp_directory_path()) {

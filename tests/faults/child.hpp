@@ -20,11 +20,11 @@ struct Ended {
   };
   How how = How::Broken;
   std::string problem;      ///< Refused, Broken: the message
-  std::vector<Call> calls;  ///< what it recorded; includes calls if the plan records them
+  std::vector<Call> calls;  ///< recorded texts, and recorded calls if the plan's `record` is set
   long counted = 0;         ///< number of calls of a command that was not killed
 };
 
-/// `plan.log` is emptied first and must be set.
+/// Runs `command` in a child process under `plan`. `plan.log` must be set; it is emptied first.
 Ended run_child(const CallPlan& plan, const std::function<void()>& command);
 
 }  // namespace faults

@@ -18,7 +18,7 @@ struct Command {
   std::string name;
   Work prepare;  ///< makes the stations in an empty folder
   Work act;
-  Work again;  ///< what a user types after a fault; null: act
+  Work again;  ///< the command that a user types after a fault; null: act
   Work other;  ///< another command that may follow instead; null: resume in each station
   std::vector<std::string> stations;  ///< stations to check afterwards
   /// People who have withdrawn when the command is done, by station.
@@ -28,7 +28,7 @@ struct Command {
   /// People whose permission the command grants; until the database is settled, both answers are valid.
   std::set<std::string> allowed{};
   bool refuses = false;  ///< the command must be refused and change nothing
-  bool is_read = true;   ///< exports can be made from the stations before the command is repeated
+  bool is_read = true;   ///< exports can be made from the stations right after the fault
 };
 
 const std::vector<Command>& all_commands();

@@ -14,13 +14,15 @@ using Lines = std::vector<std::string>;
 /// Results of sessions: each session's state, its units, answers and last showings. Equal for a session that
 /// was interrupted and resumed and one that was not.
 Lines session_content(const fs::path& database);
-/// Every row of every table except the log of events and the register of exports, without times of day.
+/// Every row of every table except the register of exports, without times of day. Of the log of events, only
+/// the events of a session, except "resumed".
 Lines database_content(const fs::path& database);
 /// The permissions of each participant.
 Lines permission_content(const fs::path& database);
 /// The personal file beside a database; empty if there is none.
 Lines personal_content(const fs::path& database);
-/// Names and bytes of all files in a folder; lines with a time of day or a path are left out.
+/// Name and SHA-256 of each file in a folder except export.sha256. Lines that may hold a time of day or a
+/// path are left out of the hash.
 Lines folder_content(const fs::path& folder);
 
 /// One row per acknowledged answer, with its number and time: it must never change.
@@ -33,7 +35,7 @@ bool is_planned(const fs::path& database);
 bool stands_in(const fs::path& folder, const std::string& needle, std::string& where);
 
 Lines operator+(Lines all, const Lines& more);
-/// Lines of `part` that `all` lacks, at most three; empty if none.
+/// Lines of `part` that `all` lacks: the first three, and the number of further lines; empty if none.
 std::string missing(const Lines& part, const Lines& all);
 /// The differences of two contents as text; empty if equal.
 std::string difference(const Lines& wanted, const Lines& found);

@@ -48,7 +48,8 @@ void erase_names(std::map<std::string, Value>& names, const std::string& path) {
                 [&](const auto& one) { return one.first == path || one.first.starts_with(path + '/'); });
 }
 
-/// How far each file and folder was synced: index of the last sync, after which nothing is certain.
+/// For each file and folder the index of its last sync, which makes earlier calls on it durable; `anything`
+/// is the number of calls up to the last sync of any file or folder.
 struct Synced {
   std::map<std::uint64_t, std::size_t> files;
   std::map<std::string, std::size_t> folders;
@@ -192,7 +193,7 @@ class Crash {
     if (kept || sure)
       tree_.files[call.file].resize(static_cast<std::size_t>(call.at));
     else if (model_ == Model::Ext4)
-      torn_off_.insert(call.file);  // later data went into new blocks, which no durable size includes
+      torn_off_.insert(call.file);  // blocks written later are beyond every durable size of the file
   }
 
   void change_name(const Call& call) {

@@ -35,7 +35,7 @@ void try_each(const CrashOptions& options, int worker, Crashes& crashes, const S
   }
 }
 
-/// Kills at random calls; each is also a power cut under both models.
+/// Cuts the power at random calls, each under both models.
 void try_kills(const CrashOptions& options, int worker, Crashes& crashes, const Say& tried) {
   for (long i = worker; i < options.kills; i += options.jobs) {
     std::mt19937 random(options.seed * 100'003 + static_cast<unsigned>(i));
@@ -57,7 +57,7 @@ struct Row {
   long calls = 0, ext4 = 0, posix = 0, failed = 0;
 };
 
-/// The message without its place, so that equal causes are counted once.
+/// vip_study_app needs a window folder or its none.cpp. apps_test opens no window, so that it takes none.cpp.
 std::string cause_of(const std::string& line) {
   std::string cause;
   std::string said = line.substr(std::min(line.size(), line.find("): ") + 3), 160);

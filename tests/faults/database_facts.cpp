@@ -11,9 +11,10 @@ using study::sqlite::Statement;
 
 namespace {
 
-/// The decision in force: 0 if a refusal is not superseded by a later change, because stations that did not
-/// know of each other may have recorded both; the last change in schemas without that column. Without
-/// changes, the last answer on the consent page.
+/// SQL for a person's decision in force: 1 allowed, 0 refused. Among changes of the permission that no later
+/// change superseded, a refusal wins, because stations that did not know of each other may have recorded
+/// both. Schemas without the column `superseded`: the last change. Without any change: the last answer on the
+/// consent page.
 std::string decision_sql(Connection& database, const std::string& what, const std::string& question) {
   const bool says_which_holds =
       database.integer(

@@ -1,8 +1,9 @@
 #pragma once
-/// A layer between a program and its files, clock and life. It counts every libc call that changes a file
-/// below one folder, lets the k-th one fail or be the last, and records all of them with their data, so that
-/// the states after a power cut can be made later (crash_states.hpp). It covers all code of the program
-/// alike: SQLite, the standard library, the journal, personal data, exports, chores and locks.
+/// A layer between a program and its files and clock. It counts every libc call that changes a file below one
+/// folder, and lets the k-th such call fail or kills the program at it. It can record all of these calls with
+/// their data, so that the states after a power cut can be computed later (crash_states.hpp). It covers all
+/// code of the program alike: SQLite, the standard library, the journal, personal data, exports, chores and
+/// locks.
 ///
 /// A test program links the source and arms it, mostly in a forked child. Whole programs load it as a library
 /// by LD_PRELOAD; it then reads its plan from the environment (file_calls_environment.cpp).
@@ -10,8 +11,8 @@
 /// It counts open for writing, write, sync, truncate, rename, link, remove, mkdir and their stdio
 /// equivalents, but not writes through a mapping (the index of SQLite's log, which every opening rebuilds).
 ///
-/// If asked to, it counts reads too, apart from the others: open for reading, read and the listing of a
-/// folder. Locks never fail: SQLite takes one that does for a busy one and waits ten seconds.
+/// If the plan says so, it counts reads too, separately: open for reading, read and the listing of a folder.
+/// Locks never fail, because SQLite treats a failed lock as a busy one and waits ten seconds.
 
 #include <cstdint>
 #include <string>

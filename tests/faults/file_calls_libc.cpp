@@ -51,7 +51,7 @@ std::int64_t place_of(int fd) {
   return ::lseek(fd, 0, SEEK_CUR);
 }
 
-/// Bytes of a file that may be open only for writing.
+/// Bytes of a file, read through a new descriptor, because `fd` may be open only for writing.
 std::string bytes_at(int fd, std::int64_t at, std::size_t size) {
   char link[40];
   std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
@@ -93,7 +93,7 @@ int sync_with(const char* name, int fd) {
   return done;
 }
 
-/// Returns errno, or 0.
+/// Returns the result of `work`, or -1 with errno set if the plan makes the call fail.
 template <class Work>
 int resize_with(int fd, Need need, Work work) {
   if (!watched(fd)) return work();
@@ -239,7 +239,7 @@ VIP_GOES(rmdir, (const char* path), (path), AT_FDCWD)
 VIP_FOLDER(mkdir, (const char* path, mode_t mode), (path, mode), AT_FDCWD)
 VIP_FOLDER(mkdirat, (int at, const char* path, mode_t mode), (at, path, mode), at)
 
-/// libc makes its folder internally.
+/// Replaced too, because libc's mkdtemp() makes its folder without calling the mkdir() above.
 char* mkdtemp(char* path) noexcept {
   const auto call = next<char* (*)(char*)>("mkdtemp");
   if (watched_at(AT_FDCWD, path).empty()) return call(path);

@@ -44,7 +44,7 @@ void record(Done kind, std::uint64_t file, std::int64_t at, std::string_view pat
 Act count(Need need);
 /// For calls that are done completely or not at all.
 bool refuse(Need need);
-/// Counts a call that reads, if the plan asks for it. True if the call must fail.
+/// If the plan counts reads, counts a read of a watched file. True if the call must fail.
 bool refuse_read(int fd);
 bool refuse_read(int folder, const char* path);
 

@@ -48,7 +48,7 @@ Arguments resume_arguments(const fs::path& folder, const std::string& database) 
   return vip_study({"resume", "--db", folder / database, "--events"});
 }
 
-/// Two of the three sessions are finished; the third was killed during a trial.
+/// Kills a run of two sessions after it has printed 12 lines of events, in the middle of the first session.
 void cut_session(const fs::path& folder) {
   write_protocol(folder);
   apps::test::Process program(run_arguments(folder, "s.db", {"P01", "P02"}));
@@ -81,8 +81,8 @@ Lines withdrawal_content(const fs::path& folder) {
   return all;
 }
 
-/// Two stations with equal participant codes; a person with one of them withdrew at one station after an
-/// earlier merge.
+/// Two stations that both used the code P01. P02 withdrew at the north station after its database had been
+/// copied to all.db, as by an earlier merge.
 void prepare_merge(const fs::path& folder) {
   run_whole(folder, "north.db", {"P01", "P02"}, "north");
   run_whole(folder, "south.db", {"P01", "P03"}, "south");

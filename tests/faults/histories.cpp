@@ -29,7 +29,8 @@ long calls_of(Kind kind) {
   }
 }
 
-/// "refused", "tombstone" and the like, with the following text without numbers and names.
+/// The kind of a problem ("refused", "tombstone", ...) with its text up to the first path or quote, without
+/// digits and names of stations.
 std::string kind_of(const std::string& problem) {
   std::string kind;
   for (std::size_t i = 0; i < problem.size() && kind.size() < 90; ++i) {

@@ -91,7 +91,8 @@ void HistoryRun::restore(const Step& step) {
   here().restored = true;
 }
 
-/// Does what a writer's error message says; the result replaces the damaged database.
+/// Salvages the database as the error messages of commands that write advise, and puts the result in its
+/// place.
 void HistoryRun::salvage(const Step& step) {
   if (!stations_.has_database(station_)) return;
   told_ += "salvage";

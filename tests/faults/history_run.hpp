@@ -39,7 +39,7 @@ class HistoryRun {
   void wrong(const std::string& problem) { problems_.push_back(problem); }
   Station& here() { return stations_[station_]; }
   fs::path database() const { return stations_.database_of(station_); }
-  /// A person whom the station knows; empty if none.
+  /// Person::key() of a person whom the station knows; empty if none.
   std::string somebody(const Step& step);
   DatabaseFacts facts() { return stations_.facts_of(station_, problems_); }
 

@@ -74,7 +74,7 @@ bool names_subject(const std::string& text, const std::string& participant) {
   return false;
 }
 
-/// Responses, as in DatabaseFacts, and units, each from the last line of its row in a journal.
+/// The responses in a journal, each from the last line of its row, in the form of Response::row.
 std::set<std::string> journal_responses(const std::string& bytes) {
   std::map<std::int64_t, std::string> last;
   for (std::size_t at = 0, end; (end = bytes.find('\n', at)) != std::string::npos; at = end + 1) {

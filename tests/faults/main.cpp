@@ -197,8 +197,7 @@ void try_together(const Options& options, const fs::path& folder, Table& table) 
       starts.load(), refused.load(), looks.load());
 }
 
-/// Adds power cuts in single commands, and histories of many: these call the library in children of their
-/// workers.
+/// Adds the subcommands `crashes` and `histories`, which run commands of the library in child processes.
 void add_library_commands(CLI::App& app, std::function<long()>& run) {
   auto crashes = std::make_shared<CrashOptions>();
   CLI::App& cuts = *app.add_subcommand("crashes", "What a power cut may leave of each command, call by call");

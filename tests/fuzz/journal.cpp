@@ -1,5 +1,5 @@
-/// Any bytes as the journal of answers. Alone, it is salvaged or refused; beside a whole database, opening
-/// that for writing reconciles the two or refuses. Neither loses answers of the database.
+/// Any bytes as the journal of answers. Alone, it is salvaged or refused. Beside a whole database, opening
+/// the database for writing reconciles the two or refuses. Neither loses answers of the database.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-/// ROUNDS FOLDER replays a corpus folder through LLVMFuzzerTestOneInput: each file as it is, its truncation
-/// at ROUNDS / 4 places, and ROUNDS fixed-seed mutations of it. A crash, a sanitizer report or an exception
-/// that leaves the entry point fails the test.
+/// usage: PROGRAM ROUNDS FOLDER. Replays the corpus in FOLDER through LLVMFuzzerTestOneInput: each file as it
+/// is, truncated at ROUNDS / 4 places, and with ROUNDS mutations from a fixed seed. A crash, a sanitizer
+/// report or an exception that leaves the entry point fails the test.
 
 #include <algorithm>
 #include <cstdint>

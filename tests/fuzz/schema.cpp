@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fs::path sound = [] {
     const fs::path path = folder / "sound.db";
     fs::copy_file(base::resource("tests/libstudy/fixtures/study_v4.db"), path);
-    study::Store(path, study::sqlite::Open::Write);  // with a journal of answers
+    study::Store(path, study::sqlite::Open::Write);  // opening for writing adds the journal of answers
     return path;
   }();
   const auto wrong = fuzz::attack(folder.path(), sound, data, size);

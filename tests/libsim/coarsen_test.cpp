@@ -74,7 +74,7 @@ TEST(Coarsen, KeepsMassMomentumAndCentreOfMass) {
   };
   for (const auto& p : fine) add(before, p);
   for (const auto& p : coarse) add(after, p);
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(after[k], before[k], 1e-2) << k;  // sums are about 1e4 m
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(after[k], before[k], 1e-2) << k;  // sums are of the order of 1e4
 }
 
 TEST(Coarsen, NeverMergesBeyondATarget) {

@@ -53,7 +53,8 @@ TEST(OwnLevels, EveryEffectHasACoarsestLevelAndAdhesionThatOfCohesion) {
   }
 }
 
-/// All effects up to this level, with coefficients that need no additional substeps.
+/// All effects that have a coarsest level, up to this level, with coefficients that need no additional
+/// substeps.
 std::vector<sim::Effect> effects_to(double coarsest) {
   std::vector<sim::Effect> out{{EffectKind::Viscosity, 0.05}, {EffectKind::Cohesion, 20},
                                {EffectKind::Adhesion, 10},    {EffectKind::AirDrag, 2},

@@ -81,7 +81,7 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
       EXPECT_NEAR(now.velocity_m_s[1], -9.81 * (fluid->time_s() - rested_s), 1e-4);
     }
     for (int corner = 0; corner < 8; ++corner) {
-      // No point more than a millimetre below the floor may be inside the brick.
+      // Points under the brick, 1 mm below the floor, must not be inside it.
       const sim::Vec3d below{now.pose.centre_m[0] + (corner & 1 ? 0.1 : -0.1), -1e-3,
                              now.pose.centre_m[2] + (corner & 4 ? 0.1 : -0.1)};
       EXPECT_GT(sim::signed_distance(brick, now.pose, below), -1e-9) << frame;
@@ -153,7 +153,8 @@ TEST(FreeObstacles, MomentumIsThatOfEffectsToo) {
   }
 }
 
-/// Rotation of a ball in water that rotates at 1 /s, after half a second and at its fastest.
+/// A ball in water whose rotation is set to 1 rad/s before each frame: it must reach 0.8 rad/s within half a
+/// second and never exceed 1.05 rad/s.
 void water_that_turns_spins_a_ball(const sim::Effect& effect, bool triangles = false) {
   for (const double density : {100.0, 1000.0}) {
     const sim::Vec3d middle{0.5, 0.5, 0.5};

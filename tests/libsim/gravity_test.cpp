@@ -226,7 +226,7 @@ TEST(Gravity, TheAccountOfMomentumClosesAlongAnyDirection) { account_closes(Back
 TEST(GravityGpu, TheAccountOfMomentumClosesAlongAnyDirection) { account_closes(Backend::Cuda); }
 
 /// Water that falls across a closed tank into its far corner, with splits and merges where the method has
-/// them. At most twice the speed of the fall, as of water that strikes a wall.
+/// them. Its speed may be at most twice that of a fall along the tank's diagonal.
 void methods_follow(Backend backend) {
   auto scene = fluid_test::tank({12 * d, 12 * d, 12 * d}, {8 * d, 8 * d, 8 * d});
   scene.lid = true;

@@ -110,7 +110,7 @@ std::vector<float> temperatures(const sim::Simulation& fluid) {
   return out;
 }
 
-/// All particles merge, then a ball of water splits, while up to two thirds of the water rest.
+/// All particles merge, then a ball of water splits, while most of the water rests at times (beta = 0.3).
 void the_total_stays(Backend backend) {
   NEEDS_EFFECTS;
   auto options = levels_test::options_for(backend, 288, levels_test::everywhere(3));
@@ -134,7 +134,7 @@ void the_total_stays(Backend backend) {
   EXPECT_GT(report.levels.splits, 10u);
   EXPECT_GT(rested, 1000);
   EXPECT_NEAR(report.heat.held / before, 1, 1e-5);
-  // No water gets warmer than the warmest at the start.
+  // No water becomes colder or warmer than water was at the start.
   const auto theta = temperatures(*fluid);
   const auto [least, most] = std::minmax_element(theta.begin(), theta.end());
   EXPECT_GE(*least, -1e-4f);

@@ -38,7 +38,7 @@ TEST(LevelTurns, AreFrequentAfterASaccadeAndRareBesides) {
   EXPECT_EQ(turns_of(readings, still), std::string(20, 'x'));
 }
 
-/// A wide pool of 16,384 fine particles, seen from above one of its ends.
+/// A wide pool of 8,192 finest particles, seen from above the middle of a long side.
 sim::Scene pool() {
   auto out = fluid_test::tank({9.6, 3, 2.4}, {9.6, 0.9, 2.4});
   out.view.eye_m = {4.8, 2.5, 4.5};

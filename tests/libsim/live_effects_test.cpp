@@ -25,7 +25,7 @@ void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;
 }
 
-/// Two effects with columns of their own, one that limits the step, one with its own memory, and tension.
+/// Five effects. Heat adds a temperature to each particle, and foam has particles of its own.
 std::vector<sim::Effect> several() {
   sim::Effect foam{EffectKind::Foam, 20};
   set(foam, EffectOption::FoamEnergyFrom, 0.05);
@@ -88,7 +88,7 @@ std::string schedule_of(const sim::Simulation& fluid) {
   return all.substr(all.find('\n'));
 }
 
-/// Compares everything that can differ between two runs except their memory.
+/// Compares water, foam, temperatures, schedule and substeps of two runs.
 void expect_alike(sim::Simulation& a, sim::Simulation& b) {
   EXPECT_EQ(bits(a.read_state()), bits(b.read_state()));
   EXPECT_EQ(foam_of(a), foam_of(b));

@@ -107,7 +107,7 @@ TEST(Mesh, MassOfABoxAndOfATetrahedronIsExact) {
     EXPECT_NEAR(box.inertia_m2[k][k], moments[k], 1e-12);
     EXPECT_NEAR(box.inertia_m2[k][(k + 1) % 3], 0, 1e-12);
   }
-  // For x2 + y2 <= 1: volume 1/6, int x2 = 1/60, int x y = 1/120.
+  // The tetrahedron x, y, z >= 0, x + y + z <= 1: volume 1/6, int x^2 = 1/60, int x y = 1/120.
   const auto corner = sim::mass_properties(triangles(tetrahedron));
   EXPECT_NEAR(corner.volume_m3, 1.0 / 6, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -183,8 +183,8 @@ TEST(Mesh, DistancesAreThoseOfTheShape) {
     EXPECT_NEAR(wedge.distance_m({apex - 0.1, y, 0}), std::hypot(0.1, y), 1e-9);
 }
 
-/// Threads compute nodes independently: each node holds the exact distance up to a float's rounding. With
-/// contracted products and sums, this file may round a node's place differently than the mesh did.
+/// Threads compute nodes independently: each node holds the exact distance up to the rounding of a float. If
+/// the compiler fuses products and sums, this file may round a node's place differently than the mesh did.
 TEST(Mesh, TheGridHoldsTheDistancesOfItsNodes) {
   const sim::Mesh ball(triangles(ball_text(0.5, 12)), 0.1);
   const sim::DistanceGrid& grid = ball.grid();

@@ -166,7 +166,7 @@ void counts_flow_and_walls_hold(Backend backend) {
 TEST(Nozzle, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cpu); }
 TEST(NozzleGpu, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cuda); }
 
-/// Volume poured by the end of each frame that is a multiple of 1/60 s, in m_*.
+/// Poured mass, in m_*, at the end of each frame that ends at a whole multiple of 1/60 s.
 std::vector<std::int64_t> poured_over_time(const sim::Scene& scene, double frame_dt_s, int frames) {
   auto options = small(Backend::Cpu, MethodKind::LoRes);
   options.frame_dt_s = frame_dt_s;

@@ -189,10 +189,10 @@ TEST(ObstacleContact, APaddlePushesWhatFloats) {
 }
 
 TEST(ObstacleContact, ABallAfloatStaysOutOfAPost) {
-  // The post rises above the water, and the sloping floor lets the ball drift onto it.
+  // The post rises above the water. The gate opens, and the water carries the ball to the post.
   const Obstacle post = box({1.0, 0.5, 0.5}, {0.3, 1.0, 0.3});
   auto scene = pool({post, free_one(sphere({0.62, 0.62, 0.5}, 0.15), 400)});
-  scene.water.front().max_m = {0.7, 0.9, 1};  // water runs towards the post
+  scene.water.front().max_m = {0.7, 0.9, 1};
   scene.gate = true;
   scene.obstacles[1].start.centre_m = {0.5, 1.1, 0.5};
   const auto fluid = sim::make_simulation(scene, options_of());

@@ -84,8 +84,9 @@ std::string way_error(const sim::Scene& scene, std::int64_t n_star = 4096) {
   return "";
 }
 
-// At n_* = 4,096 the finest spacing is cbrt(0.8 / 32768) = 0.0290 m. A gap of 0.005 m is 0.0240 m narrower
-// than that. At its lowest the plate's underside is 0.55 m high; a way shorter by 0.25 m ends on the water.
+// At n_* = 4,096 the finest spacing is cbrt(0.8 / 32768) = 0.0290 m. A gap of 0.005 m is 0.0240 m narrower,
+// so that the plate must be narrower by twice that. At its lowest the plate's underside is 0.55 m high; a way
+// shorter by 0.25 m ends on the water.
 TEST(Obstacles, AWayThatLeavesTheWaterNoRoomIsRefusedForEveryMethodWithMends) {
   for (const auto& traits : sim::all_methods()) {
     sim::SimulationOptions options;

@@ -17,7 +17,7 @@ struct Slice {
   Slice(int width, int height) : nx(width), ny(height), water(static_cast<std::size_t>(width * height), 0) {}
   char& at(int x, int y) { return water[static_cast<std::size_t>(y * nx + x)]; }
 
-  /// Marks the cells of `edge` whose centre lies within `reach` of (x, y).
+  /// Marks the cells whose centre lies within `reach` of (x, y). `edge` is the edge of a cell.
   void mark(double x, double y, double edge, double reach) {
     const auto cell = [&](double u) { return static_cast<int>(std::floor(u / edge - 0.5)); };
     for (int cy = std::max(0, cell(y - reach)); cy <= std::min(ny - 1, cell(y + reach) + 1); ++cy) {
@@ -54,8 +54,9 @@ inline int largest_cavity(Slice slice) {
   return largest;
 }
 
-/// Water seen along z, in slices one cell thick: a cell holds water if a particle of its slice lies within
-/// 0.9 d of its centre (every point is within 0.87 d of a lattice's planes).
+/// Water seen along z, in slices as thick as a cell's edge or the particles' spacing, whichever is larger. A
+/// cell holds water if a particle of its slice lies within 0.9 spacings of its centre, seen along z. (In a
+/// cubic lattice every point lies within 0.87 spacings of a lattice point.)
 inline std::vector<Slice> water_slices(const std::vector<ParticleState>& state, const sim::Vec3d& size,
                                        double edge, double spacing) {
   double top = size[1];
@@ -72,7 +73,7 @@ inline std::vector<Slice> water_slices(const std::vector<ParticleState>& state, 
   return out;
 }
 
-/// Fraction of the z slices with a cavity of at least `cells` cells of `edge`.
+/// Fraction of the z slices with a cavity of at least `cells` cells. `edge` is the edge of a cell.
 inline double share_with_cavity(const std::vector<ParticleState>& state, const sim::Vec3d& size, double edge,
                                 double spacing, int cells) {
   const auto slices = water_slices(state, size, edge, spacing);
@@ -155,8 +156,8 @@ class Meridian {
     return cells ? sines / cells : 0;
   }
 
-  /// Largest circulation along a circle of this radius, and the centre of the strongest swirl of this reach;
-  /// both lie within the water between the axis and the walls.
+  /// Largest circulation along a circle of this radius that lies within the grid, and the centre of the
+  /// strongest swirl of this reach.
   Ring ring(double radius) const {
     Ring out;
     double most = 0;

@@ -33,7 +33,7 @@ class Run {
                 report.density_error_mean, report.density_max, report.speed_max_m_s,
                 static_cast<unsigned long long>(report.guards.speed_limited));
     EXPECT_LT(report.density_error_mean, 0.002);
-    // S8. Overlapping poured layers once made water of Faucet 1.9 times as fast as a fall.
+    // Overlapping poured layers once made water of Faucet 1.9 times as fast as a fall.
     EXPECT_LT(report.speed_max_m_s, 1.5 * fall_speed());
     EXPECT_LT(report.density_max, 1.05);
     EXPECT_EQ(report.guards.not_finite, 0u);

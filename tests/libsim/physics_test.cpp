@@ -20,7 +20,7 @@ void settled_dam_keeps_its_height(sim::Backend backend) {
   std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() * 98 / 100),
                    heights.end());
   const double d = fluid->spacing_m();
-  // If the block is unchanged, 98 % of its height lie below the 98th percentile.
+  // In an unchanged block the 98th percentile of the heights is 98 % of the block's height.
   const double top = heights[heights.size() * 98 / 100] / 0.98;
   std::printf("settled dam: top %.3f m of 7.2, d = %.3f m, centre %.3f m\n", top, d,
               fluid_test::centre_height(state));

@@ -257,7 +257,7 @@ bool same(const std::vector<fluid_test::ParticleState>& a, const std::vector<flu
 }
 
 void saccades_split_no_more_than_the_cap(Backend backend) {
-  // S21: the gaze jumps between two points 45 degrees apart at 500 degrees/s, in 6 frames each, then rests
+  // S21: the gaze jumps between two points 45 degrees apart at 450 degrees/s, in 6 frames each, then rests
   // for 12.
   const auto fluid = make(backend, MethodKind::Ours);
   std::uint64_t before = 0, most = 0;

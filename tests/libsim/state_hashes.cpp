@@ -1,6 +1,7 @@
-/// vip-state-hashes DATA_FOLDER [N_STAR [FRAMES]]: hashes of the solver's results, to compare two versions of
-/// the sources on one machine: three scenes, five methods, every 20th frame, and the schedule of each.
-/// Ours-TSp runs at tau = -6. A change that only moves code leaves every line unchanged.
+/// vip-state-hashes [DATA_FOLDER [N_STAR [FRAMES]]] (default: data 512 200) prints hashes of the solver's
+/// results, to compare two versions of the sources on one machine: three scenes, five methods, every 20th
+/// frame, and the schedule of each. Ours-TSp runs at tau = -6. A change that only moves code leaves every
+/// line unchanged.
 
 #include <cmath>
 #include <cstdlib>
@@ -16,7 +17,7 @@
 
 namespace {
 
-/// A wavy surface in front of everything, so that every feature of saliency has something to read.
+/// A wavy surface in three quarters of the picture, so that every feature of saliency has something to read.
 sim::GBuffer picture_of(const sim::Scene& scene, int frame) {
   constexpr int width = 96, height = 54;
   sim::GBuffer out;
@@ -44,7 +45,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Hash of everything that a program can read of a frame.
+/// Hash of the particles, their saliency and a part of the report of a frame.
 std::string hash_of(sim::Simulation& fluid) {
   std::string bytes;
   for (const auto& p : fluid.read_state()) append(bytes, p);

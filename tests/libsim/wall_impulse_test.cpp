@@ -48,7 +48,7 @@ void account_closes_over_walls_and_gauges(Backend backend) {
     ASSERT_EQ(account.gauges.size(), 4u);
     const auto wall = [&](Wall which) { return account.walls[static_cast<std::size_t>(which)]; };
     const double stroke = column.weight / 60;
-    // Two gauges cover a wall, so their sums must equal the wall's: 1e-5 is the rounding of single squares.
+    // Two gauges cover a wall, so their sums must equal the wall's up to rounding (1e-5).
     EXPECT_NEAR(account.gauges[0].sum() + account.gauges[1].sum(), wall(Wall::Floor).sum(), 1e-5 * stroke);
     EXPECT_NEAR(account.gauges[2].sum() + account.gauges[3].sum(), wall(Wall::HighX).sum(), 1e-5 * stroke);
     EXPECT_NEAR(account.gauges[2].coarse_pressure + account.gauges[3].coarse_pressure,
@@ -146,7 +146,7 @@ void ledger_closes(Backend backend, bool ours, bool dam) {
   for (int part = 0; part < parts; ++part) {
     if (ours) wander(*fluid, part * 5);
     const auto books = books_of(*fluid, column, 5);
-    // The larger of both sides is at least the weight's impulse, over any five frames.
+    // `open` is a share of the weight's impulse over these five frames.
     EXPECT_LT(books.open, 1e-3) << "frames " << part * 5 << " to " << part * 5 + 4;
     all.change += books.change / parts;
     all.walls += books.walls / parts;
@@ -292,7 +292,7 @@ void a_side_of_a_box_is_pressed_by_its_depth(Backend backend) {
     const double foot = 0.25 * static_cast<double>(band);
     const double share = force[band] / (1000 * gravity * (level - foot - 0.125) * 0.25 * 0.5);
     std::printf("side of a box, from %.2f m: %.3f rho g h A, level %.3f m\n", foot, share, level);
-    // The highest band ends at an edge, where water presses less: 0.91 of it.
+    // The highest band ends at an edge, where water presses less: 0.91 was measured.
     EXPECT_NEAR(share, 1, band < 2 ? 0.1 : 0.15) << foot;
   }
 }

@@ -180,7 +180,8 @@ void a_crowd(Backend backend) {
   // The fast crowd shortens the substeps. In short substeps more of the water counts as still: the pool moved
   // by 0.054 d.
   EXPECT_LT(pool.way_m, 0.08 * d);
-  // Without the limit on the displacement of limited particles, some arrived here at once: 5.4 d and 6.5 m/s.
+  // Without the limit on the displacement of slowed particles, some arrived in the pool at once: 5.4 d and
+  // 6.5 m/s.
   EXPECT_LT(pool.speed_m_s, 0.5);
 }
 TEST(Divergence, AThousandInOnePlaceAreNamedAndHarmNobodyFar) { a_crowd(Backend::Cpu); }
@@ -242,8 +243,8 @@ void sound_runs_have_none(Backend backend, std::int64_t n_star, int frames) {
 TEST(Divergence, SoundRunsHaveNone) { sound_runs_have_none(Backend::Cpu, 128, 30); }
 TEST(DivergenceGpu, SoundRunsHaveNone) { sound_runs_have_none(Backend::Cuda, 4096, 120); }
 
-/// A box of 1 m swings into a pool of 1.2 m: water leaves through gaps of 0.1 m beside it, faster than the
-/// box by more than three times.
+/// A box 1 m wide swings into a pool 1.2 m wide, and presses water out through gaps of 0.1 m beside it, at
+/// more than three times the box's largest speed.
 void a_stamp(Backend backend) {
   auto scene = fluid_test::tank({1.2, 1.6, 1.2}, {1.2, 0.4, 1.2}, 30);
   scene.v_ref_m_s = 8;

@@ -21,7 +21,7 @@ constexpr double d = sim::cases::d;
 constexpr double length = 24 * d, width = 8 * d, depth = 6 * d;
 const std::vector<MethodKind> methods{MethodKind::HiRes, MethodKind::Ours, MethodKind::OursTsp};
 
-/// A long pool; finest around the view's axis.
+/// A long pool. Methods with levels are finest around the view's axis.
 sim::Scene pool_scene() { return sim::cases::tank({length, 3, width}, {length, depth, width}); }
 
 State lattice() { return sim::cases::block(MethodKind::HiRes, {0, 0, 0}, {length, depth, width}); }

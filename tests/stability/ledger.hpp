@@ -56,7 +56,7 @@ class Ledger {
     double unattributed = 0;  ///< part of the constraint's impulse that no wall gave
     double rests = 0;   ///< the same, plus what particles that were not solved took from the velocity grid
     double forces = 0;  ///< impulse of the forces less g M dt
-    double event = 0;   ///< the largest frame's splits and merges, as a share of the sum of m |v|
+    double event = 0;   ///< largest momentum of a frame's splits and merges, as a share of the sum of m |v|
     double energy = 0;  ///< largest energy, as a share of the energy of the start and of poured water
   };
   Balance balance() const {

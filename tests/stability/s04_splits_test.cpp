@@ -43,12 +43,12 @@ struct Unrest {
   double split_share = 0;  ///< largest share of the particles that split in a frame
 };
 
-/// The `count` particles nearest to the middle: centres of spheres that hold a particle even if they are
-/// small.
+/// The places of the `count` particles of level 3 that are nearest to the middle: a sphere around one of them
+/// holds a particle even if it is small.
 std::vector<sim::Vec3d> middle_particles(const std::vector<ParticleState>& state, std::size_t count) {
   std::vector<sim::Vec3d> places;
   for (const auto& p : state) {
-    if (p.level < 3) continue;  // it found no partner to merge with, and may have nothing to split
+    if (p.level < 3) continue;  // it found no partner to merge with
     places.push_back({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
   }
   const auto from_middle = [](const sim::Vec3d& at) {
@@ -181,8 +181,8 @@ void splits_are_calm(Backend backend, const std::vector<double>& radii, const st
     EXPECT_LE(splits.most(&Unrest::split_share), throttle);
   }
 }
-/// Splits of many particles down to the finest level stir the water most. The slow suite has those by one and
-/// two levels, and those of one particle, which are two thirds of the runs.
+/// The short test splits many particles down to the finest level, which stirs the water most. The slow suite
+/// also splits by one and two levels, and one particle alone.
 TEST(S04Splits, AreCalm) { splits_are_calm(Backend::Cpu, {few, far_m}, {3}); }
 TEST(S04SplitsSlow, AreCalm) { splits_are_calm(Backend::Cpu, {one, few, far_m}, {1, 2, 3}); }
 TEST(S04SplitsGpu, AreCalm) { splits_are_calm(Backend::Cuda, {one, few, far_m}, {1, 2, 3}); }

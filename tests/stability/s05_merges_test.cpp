@@ -65,7 +65,7 @@ void square_wave_does_not_oscillate(Backend backend) {
   options.start = fluid->read_state();
   fluid = sim::make_simulation(tank.scene, options);
   std::int64_t settled = 0;
-  // The last ones beside a wall wait until they have room.
+  // The last particles to split lie beside a wall, and wait until they have room.
   for (int frame = 0; frame < 300; ++frame) {
     fluid->force_targets(everywhere(frame / 2 % 2 ? 0 : 3));
     fluid->step_frame();

@@ -54,7 +54,7 @@ TEST(S09Jet, StrongGravityCountsWhereWaterRests) {
         .next();
   };
   EXPECT_EQ(steps(gravity), 2);
-  // A substep of sqrt(0.04 h / g) needs 60^-1 sqrt(1000 / (0.04 0.3)) = 4.8 substeps a frame; the
+  // A substep of sqrt(0.04 h / g) needs sqrt(1000 / (0.04 * 0.3)) / 60 = 4.8 substeps a frame; the
   // displacement of the fastest particle alone would need 3.7.
   EXPECT_EQ(steps(1000), 5);
 }

@@ -29,8 +29,8 @@ std::string numbers(std::initializer_list<double> values) {
   return out + "]";
 }
 
-/// A dam with every kind of object that a scene can place, whose tank's low corner lies at x, y, z in the
-/// world.
+/// A dam with a nozzle, an outlet, a central force, a visible box and a gaze, whose tank's low corner lies at
+/// x, y, z in the world.
 std::string text_at(double x, double y, double z, bool moved = true) {
   const double ox = moved ? x : 0, oy = moved ? y : 0, oz = moved ? z : 0;
   const auto at = [&](double a, double b, double c) { return numbers({ox + a, oy + b, oz + c}); };

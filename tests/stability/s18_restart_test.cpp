@@ -76,7 +76,7 @@ void run(sim::Simulation& fluid, const sim::Scene& scene, int frames) {
   }
 }
 
-/// Everything that a program can read.
+/// Particles, saliency, two fields, and the report's and the account's main numbers, as bytes.
 std::string read_all(sim::Simulation& fluid) {
   std::string out;
   const auto add = [&](const auto& values) {

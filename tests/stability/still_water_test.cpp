@@ -134,7 +134,7 @@ void one_level_stays_still(Backend backend, MethodKind method, std::int64_t part
         << viscosity << " m2/s, " << substeps << " x " << iterations;
   }
 }
-/// Viscosity, substeps and iterations, each in both directions from the default of 2 x 4.
+/// All combinations of these viscosities, substeps and iterations. The default is 2 substeps of 4 iterations.
 std::vector<Steps> all_steps() {
   std::vector<Steps> out;
   for (const double viscosity : {0., 0.001, 0.01})

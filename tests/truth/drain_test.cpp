@@ -26,7 +26,7 @@ void tank_drains(Run run, const TruthFile& file, int across) {
   }
   EXPECT_LE(left, 0.4) << file.name() << ", " << run.name();
   const Line line = fit(time, root);
-  // h / h0 = (1 - (t + t0) / T)^2.
+  // h / h0 = (1 - (t + t0) / T)^2, with T in `whole` and t0 in `shift`.
   const double whole = -1 / line.slope, shift = whole * (1 - line.intercept);
   double off = 0;
   for (std::size_t i = 0; i < time.size(); ++i)

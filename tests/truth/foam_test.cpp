@@ -26,9 +26,9 @@ struct Turning {
   Backend backend = Backend::Cpu;
 };
 
-/// Volume of the water, m3, each cell weighted by how full its 26 neighbours are, with weights one over
-/// distance^4, and interpolated linearly between the centres of cells with water. d is the finest spacing;
-/// the tank has n cells of `edge` a side.
+/// Volume of the water, m3, each particle weighted by how full the surroundings of its place are. A cell's
+/// weight is how full its 26 neighbours are, with weights one over distance^4; it is interpolated linearly
+/// between the centres of cells with water. d is the finest spacing; the tank has n cells of `edge` a side.
 double between_water(const State& state, double d, double edge, int n) {
   std::vector<double> filled(static_cast<std::size_t>(n * n * n)), share(filled.size());
   const auto at = [n](int x, int y, int z) { return static_cast<std::size_t>((z * n + y) * n + x); };

@@ -1,4 +1,4 @@
-/// Force of water at rest on a fixed sphere: rho g V upwards (Archimedes), for any particles.
+/// Force of water at rest on a fixed sphere: rho g V upwards (Archimedes), at every level of particles.
 
 #include "tests/truth/truth_helpers.hpp"
 

@@ -14,8 +14,8 @@ constexpr double d = 0.05;  // spacing of level 0, m
 constexpr double rho = 1000;
 constexpr double nu = 0.3;
 
-/// A sphere in the middle of a cube of fluid, three radii from its faces: four walls and a floor without
-/// slip, and a free surface. It turns about the vertical.
+/// A sphere in the middle of a cube of fluid whose faces are three radii from the sphere's middle: four walls
+/// and a floor without slip, and a free surface. The sphere turns about the vertical.
 struct Turning {
   double spacings = 3;                         ///< particles of the start's level per radius of the sphere
   int level = 0;                               ///< level of the particles at the start

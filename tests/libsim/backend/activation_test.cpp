@@ -12,7 +12,8 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A state before the frame's choice; its grid holds the drops' own velocities.
+/// The state before a frame chooses its active particles; the grid has the mean velocities and energies of
+/// the drops.
 FluidState ready(const std::vector<Drop>& all, float beta) {
   auto state = state_of(all);
   auto& a = state.activation;
@@ -182,7 +183,8 @@ SIM_TEST(Inherit, TheMeanChangeOfTheCell) { inherits(true); }
 SIM_TEST(Inherit, TheMeanVelocityOfTheCell) { inherits(false); }
 
 SIM_TEST(Importance, IsEquation12To14OnALinearFlow) {
-  // One particle in each cell centre, v = (2 x, 0, 0) per cell: |dV| = 2 in every cell, dV/dl = 0.
+  // One particle in the centre of each cell, with v = 2 k along x in the cells of column k: |dV| = 2 in every
+  // cell, dV/dl = 0.
   std::vector<Drop> all;
   for (int c = 0; c < 48; ++c) {
     const auto at = [](int k) { return 1.5f * (static_cast<float>(k) + 0.5f); };

@@ -77,7 +77,8 @@ SIM_TEST(Columns, SplitAndMergeByTheRuleOfTheirRow) {
                 columns(Column::Waiting, Column::Age, Column::Temperature, Column::Swirl).bits);
 }
 
-/// Three values of one column: 0 is a copy of its parent; 1 and 2 merge, or each receive half of 0.
+/// The values of three particles in one column (8, 2, 6) after `change`: particle 0 splits or is shared out,
+/// particles 1 and 2 merge with each other or each with a half of particle 0.
 std::vector<float> after(Descent rule, void (*change)(const RuledColumns<float>&)) {
   std::vector<float> values{8, 2, 6};
   RuledColumns<float> column{};
@@ -98,7 +99,7 @@ SIM_TEST(Columns, RulesAreWhatTheySay) {
   EXPECT_EQ(after(Descent::Sum, join)[1], 8);
   EXPECT_EQ(after(Descent::Max, join)[1], 6);
   EXPECT_EQ(after(Descent::Reset, join)[1], 0);
-  // Masses are 2, 1, 1: sharing conserves sum m x (MassMean) or sum x (Sum).
+  // Masses are 2, 1, 1 before and 2, 2, none after: sharing conserves sum m x (MassMean) or sum x (Sum).
   const auto share = [](const RuledColumns<float>& c) { c.share(0, 1, 2); };
   EXPECT_EQ(after(Descent::MassMean, share), (std::vector<float>{7, 5, 6}));
   EXPECT_EQ(after(Descent::Sum, share), (std::vector<float>{10, 6, 6}));

@@ -60,7 +60,7 @@ inline FluidState state_of(const std::vector<Drop>& drops) {
   return state;
 }
 
-/// V of all particles.
+/// Measures the grid's mean velocities V from all particles.
 inline void update_velocity(VelocityGrid& grid, FluidState& state) {
   CellMomentum sums;
   sums.measure(MovingView(state.particles), nullptr, {{Whose::All, grid.frame()}});

@@ -21,7 +21,8 @@ inline std::vector<Stage> passes_of(EffectKind kind) {
 }
 inline std::size_t index_of(EffectKind kind) { return static_cast<std::size_t>(kind); }
 
-/// Particles at rest. Their neighbour lists reach to 1.1 hbar, a little beyond the true neighbours.
+/// Particles at rest. A pair is in the neighbour lists if it is nearer than 1.1 times the mean of its
+/// supports.
 inline FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   FluidState state;
   state.guards.resize(1);
@@ -55,7 +56,8 @@ inline std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
   return state.particles.all().velocity.to_host();
 }
 
-/// Marks the particles with active = 0 as not solved; the neighbour lists then belong to slots.
+/// Marks the particles with active = 0 as not solved, and sorts the neighbour lists by slot: solved particles
+/// first.
 inline void let_rest(FluidState& state, const std::vector<std::uint8_t>& active) {
   std::vector<int> slots, others;
   for (int i = 0; i < state.particles.size(); ++i) {

@@ -113,7 +113,8 @@ struct BesideAWall {
 SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWorkBeyondTension) {
   NEEDS_EFFECTS;
   // Particles of spacing d in a column before the wall, lifted together: the work over the area d^2 is rho_0
-  // int s a(s) ds for every d. The adhesion pull does 0.75 of W - sigma.
+  // int s a(s) ds for every d, with the acceleration a at the distance s. The adhesion pull does 0.75 of the
+  // work minus the tension.
   const BesideAWall wall{.tension = 20, .work = 50};
   for (const float d : {0.05f, 0.1f}) {
     const float h = 2 * d;
@@ -192,7 +193,7 @@ SIM_TEST(AirDrag, LeavesOutLevelsCoarserThanItsOwnDetail) {
   EXPECT_EQ(v[1].y, -2);
 }
 
-/// theta of `points` after one step of conduction.
+/// Temperatures of the particles above the reference, K, after one step of conduction.
 std::vector<float> temperatures_after(FluidState& state, const std::vector<float>& before) {
   state.heat.resize(1);
   state.heat.zero();

@@ -97,7 +97,7 @@ inline std::vector<Vec4> mixed_crowd() {
 
 inline Vec3 stirred(Vec3 x) { return {3 + std::sin(9 * x.y), std::cos(7 * x.z), std::sin(5 * x.x + x.y)}; }
 
-/// One diffuse particle at x with velocity v.
+/// Replaces the first foam particle of the pool by one at x with velocity v.
 inline void put(Water& water, Vec4 x, Vec3 v) {
   auto place = water.state.foam.place.to_host();
   auto velocity = water.state.foam.velocity.to_host();

@@ -46,7 +46,8 @@ float approach_in(Speed speed, float h) {
 }
 
 SIM_TEST(Foam, WaterMeetsAsItsGradientSays) {
-  // The expected value is the mean of |G e| - e G e over the sphere.
+  // The expected value is the mean of |G e| - e G e over all directions e, where G is the gradient of the
+  // velocity.
   for (const float h : {0.2f, 0.4f}) {
     EXPECT_NEAR(approach_in([](Vec3 x) { return -3 * (x - Vec3{2, 2, 2}); }, h), 6, 0.3f) << "from all sides";
     EXPECT_NEAR(approach_in([](Vec3 x) { return 3 * (x - Vec3{2, 2, 2}); }, h), 0, 1e-3f) << "it parts";

@@ -44,7 +44,7 @@ struct FindRank {
 SIM_TEST(Histogram, FindsTheBinOfEachRankAndIsEmptyAfterwards) {
   std::mt19937 random(1);
   std::vector<int> values;
-  // One bin holds a thousand values; four bins of five are empty.
+  // One bin holds a thousand values or more; four bins of five are empty.
   for (int i = 0; i < 3000; ++i)
     values.push_back(i % 3 == 0 ? 700 : static_cast<int>(random() % bins) / 5 * 5);
   Array<int> device;

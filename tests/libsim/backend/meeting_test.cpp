@@ -91,7 +91,7 @@ SIM_TEST(Meeting, AHeavyBoxRestsOnALightOne) {
   }
 }
 
-/// Water between two bodies may push one away; the floor stops it.
+/// A force as of water between the two boxes pushes the lower box down; the floor stops it.
 SIM_TEST(Meeting, ABoxThatIsPushedDownStillBearsAnother) {
   BodiesApart two;
   two.gravity = g;

@@ -25,7 +25,8 @@ struct Pool {
   }
   std::size_t at(int x, int y, int z) const { return static_cast<std::size_t>(block.index(x, y, z)); }
 
-  /// Sum of |source - A q| over cells where q or the residual is positive, by the definition of A.
+  /// Sum of |source - A q| over cells where q or the residual is positive. A q is the sum of q minus the
+  /// neighbour's q over the six neighbours. A solid neighbour adds nothing; in air q is 0.
   double residual(const std::vector<float>& q) const {
     const auto value = [&](int x, int y, int z, bool& solid) {
       solid = x < 0 || y < 0 || z < 0 || x >= block.nx || z >= block.nz;
@@ -175,7 +176,7 @@ FluidState column_of(int side, int layers, float spacing, float squeeze) {
 }
 
 struct Column {
-  double excess = 0;    ///< mean of C two spacings or more from walls and surface
+  double excess = 0;    ///< mean of rho / rho_0 - 1 two spacings or more from walls and surface
   double height_m = 0;  ///< mean y
 };
 

@@ -14,7 +14,7 @@ Looks one_eye(const View& view, const GBuffer* seen, Vec3d direction = {0, 0, -1
   return {{{{{0, 0, 0}, direction, true}, view, seen}}};
 }
 
-/// Parts of particles at the given places; `temporal` is f_T before occlusion, the same for all.
+/// The parts of saliency of particles at these places; `temporal` is f_T before occlusion, the same for all.
 std::vector<SaliencyParts> parts_of(const std::vector<Vec4>& points, const Looks& looks, float temporal = 0,
                                     const Readings& readings = {}) {
   SaliencyInput input;
@@ -30,7 +30,7 @@ std::vector<SaliencyParts> parts_of(const std::vector<Vec4>& points, const Looks
   return parts.to_host();
 }
 
-/// Degrees by which the gaze has turned in each of these looks, one a frame; each look marks its gaze.
+/// For each gaze, one a frame, the degrees by which it has turned since the gaze of the frame before.
 std::vector<double> turns_of(const std::vector<Gaze>& gazes, const std::vector<View>& views) {
   SaliencyInput input;
   std::vector<double> out;
@@ -133,7 +133,7 @@ struct Desk {
   static constexpr double half_height_mm = 146.25, distance_mm = 600, degree = 0.017453292519943295;
   const double half_slope = std::tan(37.5 * degree);
 
-  /// Where the camera puts the point that appears at this place of the picture, mm from its middle; 3 m deep.
+  /// The point at depth 3 m that the camera draws at this place of the picture, mm from the picture's middle.
   Vec3 point(double x_mm, double y_mm) const {
     const double slope_by_mm = half_slope / half_height_mm;
     return {static_cast<float>(3 * x_mm * slope_by_mm), static_cast<float>(3 * y_mm * slope_by_mm), -3};

@@ -68,7 +68,7 @@ const State& broken_dam() {
   return state;
 }
 
-/// A viewer 2.5 m before the glass, a little above the water's middle, who looks at the middle of the front.
+/// A viewer in front of the tank, and the point that the viewer looks at; `scale` multiplies all lengths.
 struct Looking {
   Vec3d eye, target;
   double scale = 1;

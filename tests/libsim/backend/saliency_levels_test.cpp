@@ -1,4 +1,4 @@
-/// From F to s and levels, the gradients of Eq. 6, and the whole of saliency on fluids.
+/// From F to s and levels, levels by gaze alone, and the gradients of Eq. 6.
 
 #include <random>
 

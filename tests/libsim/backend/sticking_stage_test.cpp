@@ -59,8 +59,8 @@ FluidState honey_round(const std::vector<Vec4>& points, const std::vector<Body>&
   return state;
 }
 
-/// Change of momentum, in m_*, and of angular momentum about the ball's middle; `all`: sum of the particles'
-/// magnitudes.
+/// Change of momentum, m_* m/s, and of angular momentum about the ball's middle, m_* m2/s; `all`: sum of the
+/// magnitudes of the particles' changes.
 struct Exchange {
   Vec3 momentum, spin;
   float all;
@@ -131,8 +131,8 @@ SIM_TEST(Sticking, WhatGoesWithABodyIsLeftAlone) {
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LT(length(xyz(after[i]) - xyz(v[i])), 1e-4f) << i;
 }
 
-/// A column of a lattice in a shear flow over a box loses the momentum rho_0 nu times the shear per d^2,
-/// wherever its lowest particle lies.
+/// A column of a lattice in a shear flow over a box loses the momentum rho_0 nu times the shear per area d^2
+/// and time, wherever its lowest particle lies.
 SIM_TEST(Sticking, AnyLatticeFeelsTheStressOfTheShear) {
   NEEDS_EFFECTS;
   constexpr float shear = 3, viscosity = 1e-3f;  // low viscosity, so that the particles hardly slow down
@@ -173,7 +173,8 @@ SIM_TEST(Sticking, ObstaclesThatLetSlipLeaveTheSameBitsAsNone) {
 
 SIM_TEST(Sticking, BetweenIsAShare) {
   NEEDS_EFFECTS;
-  // A lone particle beside the ball: v' (1 + stick nu dt / (d s) face) = v, across its face.
+  // A lone particle beside the ball: across the normal its speed falls from v to v / (1 + stick nu dt / (d s)
+  // face), with spacing d = 0.2 m, distance s = 0.1 m and face = 0.5625.
   float left[2];
   for (const int half : {0, 1}) {
     auto state = honey_round({{0.4f, 0, 0, 0.4f}}, {body_of({0, 0, 0}, 0.3f)}, half ? 0.5 : 1);

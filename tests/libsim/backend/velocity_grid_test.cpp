@@ -36,7 +36,7 @@ void expect_momentum(const MomentumSum* sums, const std::vector<Momentum>& expec
   ASSERT_NE(sums, nullptr);
   std::vector<MomentumSum> found(expected.size());
   copy_to_host(found.data(), sums, found.size() * sizeof(MomentumSum));
-  // A particle's momentum is truncated to whole units of 2^-20 m/s.
+  // A particle's momentum is truncated to whole units of 2^-20 m_* m/s.
   const auto near = [](std::uint64_t sum, double momentum, double mass) {
     EXPECT_NEAR(static_cast<double>(static_cast<std::int64_t>(sum)) / 1048576, momentum, mass / 1048576);
   };
@@ -78,7 +78,7 @@ SIM_TEST(CellMomentum, HoldWhoseTheyAreByTheirOwnCells) {
   const auto of_fine = static_cast<std::size_t>(fine.cells());
   CellMomentum sums;
   const MovingView view(state.particles);
-  // Measures again with other selections: nothing of the first measurement may remain.
+  // Two measurements with different selections: nothing of the first may remain in the second.
   sums.measure(view, p.active.data(),
                {{Whose::All, fine.frame()}, {}, {Whose::Resting, coarse.frame(), p.start_cell.data()}});
   expect_momentum(sums.of(0), momentum_of(all, of_fine, everyone, cell_in(fine)));

@@ -62,7 +62,8 @@ SIM_TEST(Viscosity, KeepsMomentumAndSpinForMixedMassesHoweverFewItsSteps) {
   }
 }
 
-/// Positions after the loosening.
+/// Positions after the effect's passes, of which the last shifts particles at random by a small share of a
+/// spacing.
 std::vector<Vec4> loosened(FluidState& state, float gravity) {
   state.parameters.gravity = gravity;
   state.parameters.effects.values[index_of(EffectKind::Viscosity)] = 1;
@@ -94,7 +95,8 @@ SIM_TEST(Viscosity, LoosensWhatIsInsideUnderGravityByAShareOfASpacing) {
       squares += dot(step, step);
     }
     ASSERT_GE(inside, 343);
-    // Uniform along each axis: the mean square is a third per axis, and there is no common displacement.
+    // Shifts are uniform within +- `most` along each axis, so that the mean square of each component is a
+    // third of most^2. There is no common shift.
     EXPECT_NEAR(squares / inside, most * most, 0.15f * most * most);
     EXPECT_LT(length(sum) / inside, 0.15f * most);
   }

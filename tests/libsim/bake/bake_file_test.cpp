@@ -20,7 +20,6 @@ using bake_test::Folder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// Reads everything that a bake holds.
 void read_everything(const sim::BakeReader& bake) {
   sim::BakeFrame frame;
   sim::PictureReader pictures(bake);
@@ -53,7 +52,8 @@ TEST(BakeFile, ParticlesComeBackWithinTheQuantisationErrorInOrder) {
     ASSERT_EQ(frame.particles.size(), want.size());
     EXPECT_THAT(frame.facts.account.particles_by_level, ::testing::ElementsAre(768, 192));
     EXPECT_DOUBLE_EQ(frame.facts.time_s, static_cast<double>(i) / 60);
-    // Widest axis: 19 m and the sway; half a step, and the rounding of float at 20 m.
+    // The widest axis spans at most 19.6 m. A place may be off by half a step of 16 bits and by the rounding
+    // of a float at 20 m.
     const double bound = 19.6 / 131070 + 4e-6;
     ASSERT_LT(bound, 0.05 / 20);
     for (std::size_t p = 0; p < want.size(); ++p) {

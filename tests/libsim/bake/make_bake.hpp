@@ -1,6 +1,6 @@
 #pragma once
-/// Small bakes for tests: a swaying block of particles and pictures of moving gradients, all from a fixed
-/// seed.
+/// Small bakes for tests: a swaying block of particles and pictures of moving gradients. The random numbers
+/// of each frame have the frame as their seed.
 
 #include <cmath>
 #include <filesystem>

@@ -23,7 +23,7 @@ class FoamGl : public render_test::RenderGl {
     return out;
   }
 
-  /// Water 2 m ahead, a wall of particles of 0.1 m.
+  /// Water 2 m ahead: a wall of particles of 0.1 m radius.
   static std::vector<RenderParticle> water() {
     std::vector<RenderParticle> out;
     for (int y = -12; y <= 12; ++y)

@@ -103,7 +103,8 @@ std::vector<RenderParticle> crest() {
   return out;
 }
 
-/// How much the normals of neighbouring columns differ when 24 rows are averaged, root mean square.
+/// Difference between the normals of columns of pixels that are four pixels apart, averaged over 24 rows:
+/// root mean square.
 double streaks(const sim::GBuffer& g) {
   constexpr int rows = 24;
   double sum = 0;

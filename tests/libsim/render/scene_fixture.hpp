@@ -84,7 +84,8 @@ inline Reference splat(const std::vector<sim::RenderParticle>& particles, const 
   return reference;
 }
 
-/// The defaults, but for particles in the open: the camera of these tests is in a corner of the tank.
+/// The default options without clipping to the tank, because the camera of these tests is in a corner of the
+/// tank.
 inline sim::RenderOptions open_options() {
   sim::RenderOptions options;
   options.clip_to_tank = false;

@@ -163,7 +163,7 @@ TEST_F(SplatGl, OddAndTinyPicturesMatchBruteForce) {
 
 TEST_F(SplatGl, EverySplitOfAFootprintGivesTheSameBits) {
   auto particles = cloud(60, 0.1F, 1.0F, 4);
-  particles.push_back({0.05F, 0, -0.1F, 0.3F});  // around the near plane: the whole picture
+  particles.push_back({0.05F, 0, -0.1F, 0.3F});  // crosses the near plane: covers the picture
   const auto view = view_along_z(161, 121);
   auto options = exact_options();
   options.thread_px = 1000;
@@ -196,7 +196,7 @@ TEST_F(SplatGl, NearPlaneCutsSpheres) {
 
 TEST_F(SplatGl, SphereBelowAPixelFillsThePixelOfItsCentre) {
   const auto view = view_along_z(64, 64);
-  // 2 mm at 10 m: a pixel is 0.18 m wide there. Its centre lies far from any pixel's.
+  // A sphere with a radius of 2 mm at 10 m, where a pixel is 0.18 m wide. It contains no pixel's centre.
   const auto g = render({{0.01F, 0.01F, -10, 0.002F}}, view);
   EXPECT_EQ(counts.subpixel, 1u);
   const auto at = static_cast<std::size_t>(64 * 32 + 32);

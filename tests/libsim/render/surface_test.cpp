@@ -8,7 +8,7 @@ using render_test::open_options;
 using sim::RenderParticle;
 
 constexpr double degree = 3.14159265358979 / 180;
-constexpr float finest_m = 0.06F;  // radius of level 3; level 0 has twice this radius
+constexpr float finest_m = 0.06F;  // radius of the finest particles; the coarsest have twice this radius
 
 /// Shifts every particle by up to `most_r` of its radius along each axis.
 void shake(std::vector<RenderParticle>& particles, float most_r, unsigned seed) {
@@ -97,7 +97,7 @@ Roughness roughness(const sim::GBuffer& g, double radius) {
   return out.result();
 }
 
-/// A ball of 1.5 m at (0, 0, -5): particles on its surface, shaken.
+/// A ball with a radius of 1.5 m at (0, 0, -5): particles on its surface, shaken.
 std::vector<RenderParticle> ball(float radius) {
   constexpr float ball_m = 1.5F;
   const auto count = static_cast<int>(3.14159F * ball_m * ball_m / (radius * radius));
