@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Runs every command line that a page quotes in its "sh" blocks, unchanged, in a fresh copy of the project. A
-# page fails if a command ends with an error or does not write an output file that it names. The table below
-# lists the commands that cannot run unchanged, and why. The row of a skipped command names the test that runs
-# the command instead; that test must exist.
+# page fails if a command ends with an error or does not write an output file that it names, if the page names
+# a test or a script that does not exist, or if a row of the table below matches none of its commands. The
+# table lists the commands that cannot run unchanged, and why. The row of a skipped command names the test
+# that runs the command instead; that test must exist.
 # usage: scripts/run_docs.sh [PAGE ...]      default: every page; copies, logs and durations go to out/docs
 # Takes the programs from $VIP_BUILD (default: build/dev). Only README.md builds its own programs.
 # VIP_DOCS_QUICK=1 skips the commands that the table calls slow.

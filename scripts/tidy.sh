@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 changed() {  # changed [BASE]: prints the C++ files that differ from BASE
   local base=${1:-${VIP_TIDY_BASE:-}}
   [ -n "$base" ] || base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null || true)
-  git rev-parse --verify -q "$base^{commit}" >/dev/null || { echo "tidy: no earlier commit is known here" >&2; return; }
+  git rev-parse --verify -q "$base^{commit}" >/dev/null || { echo "tidy: no earlier commit is known here; name one: scripts/tidy.sh BASE" >&2; return; }
   { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '\.[ch]pp$' | sort -u || true
 }
 source_of() {  # source_of FILE: prints FILE, or for a header a source that includes it

@@ -71,7 +71,8 @@ foreach(line IN LISTS listed)
 endforeach()
 foreach(name IN LISTS slow)
   if(NOT name IN_LIST met)
-    # A build without windows, pages or effects leaves whole suites out; the listed test must still stand in a source.
+    # A build without windows, pages or effects leaves whole suites out; a source must still declare the
+    # listed test.
     string(REGEX REPLACE "^([^.]*/)?([^./]+)\\.([^/]+).*$" "TEST[_A-Z]*[(]\\2, \\3[)]" declared "${name}")
     file(GLOB_RECURSE sources ${CMAKE_CURRENT_LIST_DIR}/*_test.cpp)
     set(found "")

@@ -64,7 +64,8 @@ void prepare_withdrawal(const fs::path& folder) {
   study::sqlite::Statement(file, "VACUUM INTO ?").bind_all(database.string() + ".v5-then.bak").run();
 }
 
-/// The database "all" was merged from "north" before Ben withdrew and Anna refused gaze at "north".
+/// The database "all" was merged from "north" before Ben withdrew and Anna refused gaze and sharing at
+/// "north".
 void prepare_merge(const fs::path& folder) {
   prepare_north(folder);
   play(at(folder, "south"), south);
@@ -78,7 +79,7 @@ void merge_all(const fs::path& folder) {
   check_cleaned(at(folder, "all"), done.beside.left);
 }
 
-/// Ben withdrew and Anna refused gaze after the backup that is restored was made.
+/// Ben withdrew and Anna refused gaze and sharing after the backup that is restored was made.
 void prepare_restored(const fs::path& folder) {
   prepare_north(folder);
   const fs::path database = at(folder, "north"), kept = folder / "kept.db";

@@ -63,7 +63,7 @@ Lines session_content(const fs::path& database) {
              "(PARTITION BY unit_id, question_id) FROM response r JOIN unit USING (unit_id) "
              "JOIN session USING (session_id) JOIN question USING (question_id) "
              "ORDER BY participant, visit, position, question.code") +
-         // The judged showing: the last one, which is complete.
+         // Of each trial only the last attempt counts, which is the complete one.
          select(database,
                 "SELECT 'shown', participant, visit, t.position, p.interval, p.state, p.verdict, p.frames, "
                 "p.mean_fps, p.sd_fps, (SELECT count(*) FROM frame f WHERE f.presentation_id = "

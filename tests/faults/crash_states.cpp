@@ -233,7 +233,7 @@ class Crash {
   std::mt19937 random_;
   const Synced synced_;
   std::vector<bool> names_;    // kept calls on names
-  std::size_t committed_ = 0;  // Ext4: earlier calls on names are durable
+  std::size_t committed_ = 0;  // Ext4: number of first calls whose changes of names are durable
   std::set<std::uint64_t> ends_, torn_off_;
 };
 

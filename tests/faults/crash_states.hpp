@@ -44,7 +44,7 @@ std::size_t hash_of(const Tree& tree);
 enum class Model { Ext4, Posix };
 const char* name_of(Model model);
 
-/// Which of the losable calls are kept.
+/// Which of the calls that may be lost are kept.
 enum class Kept {
   Least,  ///< none of them
   Most,   ///< all of them

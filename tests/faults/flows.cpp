@@ -67,7 +67,7 @@ void note_secret(const fs::path& database) {
 void prepare_withdrawal(const fs::path& folder) {
   run_whole(folder, "s.db", {"P01", "P02", "P03"});
   note_secret(folder / "s.db");
-  // Registered in the folder in which the tested command looks for exports.
+  // The export is registered in the folder in which the tested command looks for exports.
   Arguments all{"/usr/bin/env", "VIP_STATE_DIR=" + (folder / "state").string()};
   const Arguments made = vip_study({"export", "--db", folder / "s.db", "--csv", folder / "csv", "--words"});
   all.insert(all.end(), made.begin(), made.end());

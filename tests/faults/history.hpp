@@ -32,7 +32,7 @@ std::vector<Step> make_history(unsigned seed, long number);
 /// Stops after the first step with a problem. `told`: the commands as text.
 Problems run_history(const std::vector<Step>& steps, const fs::path& folder, std::vector<std::string>& told);
 
-/// Leaves out steps as long as a problem of the same kind remains.
+/// Leaves out steps, faults and clock jumps as long as a problem of the same kind remains.
 std::vector<Step> shrink(std::vector<Step> steps, const fs::path& folder, const Problems& problems);
 
 struct HistoryOptions {

@@ -21,7 +21,7 @@ struct Station {
   std::set<std::string> people, withdrawn;             ///< Person::key()
   std::set<std::pair<std::string, int>> acknowledged;  ///< units answered here
   std::set<std::string> exports;                       ///< folders of the station's exports
-  bool restored = false;  ///< an older database was restored: writers must refuse until it is salvaged
+  bool restored = false;  ///< an older database was restored: commands may refuse it until it is salvaged
 };
 
 /// A copy of a database file alone, stored elsewhere.

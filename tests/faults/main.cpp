@@ -56,7 +56,6 @@ class Table {
   }
   long kills() const { return kills_; }
   long failures() const { return failures_; }
-  /// Prints nothing if the table is empty.
   void print() const {
     if (rows_.empty()) return;
     std::printf("%-34s %7s %9s %9s %9s %7s %7s\n", "command, fault", "tries", "went on", "refused", "stopped",

@@ -88,7 +88,7 @@ Together look_beside(const fs::path& folder) {
   Together all;
   prepare(folder);
   Arguments arguments = run_of(folder, "P1");
-  // Enough sessions for the log to be copied back into the file meanwhile.
+  // Enough sessions that SQLite copies its log back into the database while they run.
   for (int i = 2; i <= 24; ++i) arguments.insert(arguments.end(), {"--participant", "P" + std::to_string(i)});
   arguments.push_back("--events");
   Process session(arguments);

@@ -116,7 +116,7 @@ Bench::Bench(const Flow& flow, const fs::path& folder)
     : flow_(flow), start_(folder / "start"), now_(folder / "now"), peek_(folder / "peek") {
   fs::remove_all(folder);
   for (const fs::path& made : {start_, now_, peek_}) fs::create_directories(made);
-  // Prepared in the folder where it is tried, because exports are known by their full path.
+  // The flow is prepared in the folder in which it runs, because exports are registered by their full path.
   flow.prepare(now_);
   fs::copy(now_, start_, fs::copy_options::recursive);
   const auto begun = std::chrono::steady_clock::now();

@@ -113,7 +113,6 @@ sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRe
   return out;
 }
 
-/// Cost and result of a run.
 struct Cost {
   std::string explanation;
   std::map<std::string, int> launches;

@@ -93,7 +93,7 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
   EXPECT_NEAR(last.walls_n_s[1], mass_of(brick) * 9.81 * scene.frame_dt_s, 0.01);
 }
 
-/// The body's change of momentum must equal what the water and the walls gave it.
+/// The body's change of momentum must equal the impulses of the water, of the walls and of its weight.
 void momentum_is_the_waters_and_the_walls(const sim::Scene& scene) {
   auto options = options_of();
   options.wall_impulse = true;

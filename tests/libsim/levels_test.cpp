@@ -28,7 +28,6 @@ TEST(Levels, BadInputIsNamed) {
   options = options_for(Backend::Cpu, 64, everywhere(0));
   options.start = std::vector<ParticleState>{{1, 0, 1, 1, 1, 0, 0, 0}, {1, 0, 1, 1, 1, 0, 0, 0}};
   EXPECT_THROW(sim::make_simulation(scene, options), base::Error);
-  // No particles at all.
   options.start = std::vector<ParticleState>{};
   const auto fluid = sim::make_simulation(scene, options);
   fluid->step_frame();

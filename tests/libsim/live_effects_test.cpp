@@ -88,7 +88,6 @@ std::string schedule_of(const sim::Simulation& fluid) {
   return all.substr(all.find('\n'));
 }
 
-/// Compares water, foam, temperatures, schedule and substeps of two runs.
 void expect_alike(sim::Simulation& a, sim::Simulation& b) {
   EXPECT_EQ(bits(a.read_state()), bits(b.read_state()));
   EXPECT_EQ(foam_of(a), foam_of(b));

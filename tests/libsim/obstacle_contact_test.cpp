@@ -97,7 +97,8 @@ TEST(ObstacleContact, ACubeOfTrianglesRestsOnAnother) {
   EXPECT_NEAR(fluid->read_obstacles().at(1).pose.centre_m[1], 0.45, 0.01);
 }
 
-/// A body's change of momentum must equal the impulses of water, walls and other bodies.
+/// A body's change of momentum must equal the impulses of the water, the walls, the other bodies and its
+/// weight.
 TEST(ObstacleContact, TenBallsInAPoolKeepApartAndKeepTheAccount) {
   std::vector<Obstacle> balls;
   for (int k = 0; k < 10; ++k) {

@@ -111,7 +111,7 @@ TEST(Obstacles, APressIsRefusedUpwardsFirstTiltedUnderWaterAndAsAMesh) {
   upwards.obstacles[0].way_m[1] = 0.5;
   EXPECT_NE(way_error(upwards), "");
   auto tilted = press();
-  tilted.obstacles[0].start.turn = {0, 0, std::sin(0.05), std::cos(0.05)};  // by 0.1 about z
+  tilted.obstacles[0].start.turn = {0, 0, std::sin(0.05), std::cos(0.05)};  // by 0.1 rad about z
   EXPECT_NE(way_error(tilted), "");
   auto sunk = press();
   sunk.obstacles[0].start.centre_m[1] = 0.6;
@@ -200,7 +200,6 @@ TEST(Obstacles, AMeshWithAHoleThatWaterPassesIsNoPress) {
   EXPECT_NE(way_error(scene), "");
 }
 
-/// The error of making this fluid; empty if there is none.
 std::string making_error(const sim::Scene& scene, const sim::SimulationOptions& options) {
   try {
     sim::make_simulation(scene, options);

@@ -41,7 +41,7 @@ struct Outcome {
   std::size_t bytes = 0;
   State state;
 };
-/// Runs water that is at rest except for a Lamb-Oseen vortex of at most 8 / s at one end.
+/// Runs water that is at rest except for a Lamb-Oseen vortex at one end, whose vorticity is at most 8 / s.
 Outcome run(const sim::Scene& scene, MethodKind method, int frames, Backend backend = Backend::Cpu) {
   sim::SimulationOptions options;
   options.backend = backend;

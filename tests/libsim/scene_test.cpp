@@ -22,7 +22,6 @@ sim::Scene dam() { return sim::read_scene("data/scenes/single_dam.toml"); }
 
 std::string dam_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
 
-/// Message of the error that parsing the text throws.
 std::string error_of(const std::string& text) {
   try {
     sim::parse_scene(text, "scene.toml");

@@ -12,7 +12,8 @@ using fluid_test::ParticleState;
 using sim::Backend;
 using sim::MethodKind;
 
-/// A dam that has fallen for half a second, coarsened as far as possible in its left half.
+/// A dam that has fallen for half a second: as it is (`finest`), coarsened as far as possible where x < 6 m
+/// (`mixed`), and coarsened everywhere (`coarsest`).
 struct Fallen {
   sim::Scene scene = sim::read_scene("data/scenes/single_dam.toml");
   sim::SimulationOptions options;

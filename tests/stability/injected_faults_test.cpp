@@ -38,7 +38,6 @@ std::unique_ptr<sim::Simulation> pool(Backend backend, MethodKind method, const 
   return sim::make_simulation(scene, options);
 }
 
-/// The pool after twenty frames.
 std::unique_ptr<sim::Simulation> running_pool(Backend backend, MethodKind method) {
   auto fluid = pool(backend, method, lattice());
   for (int frame = 0; frame < 20; ++frame) fluid->step_frame();

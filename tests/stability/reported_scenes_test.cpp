@@ -18,7 +18,6 @@ using sim::Vec3d;
 constexpr MethodKind five[] = {MethodKind::LoRes, MethodKind::HiRes, MethodKind::FovFluid, MethodKind::Ours,
                                MethodKind::OursTsp};
 
-/// Methods whose water has several levels.
 bool has_levels(MethodKind method) { return method != MethodKind::LoRes && method != MethodKind::HiRes; }
 
 sim::Scene reported(const std::string& name) {

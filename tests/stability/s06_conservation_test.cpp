@@ -29,7 +29,6 @@ void events_conserve(Backend backend, int coarse_cycles, double share) {
   const auto before = momentum(start);
   const auto mass = mass_units(start);
   for (int frame = 0; frame < 200; ++frame) {
-    // A sphere of fine particles that moves along with the blob.
     fluid->force_targets({{3.5 + frame / 200.0, 4 + 0.6 * std::sin(frame * 0.1), 4}, 0.7, 0, 3});
     fluid->step_frame();
   }

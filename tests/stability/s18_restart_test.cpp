@@ -76,7 +76,6 @@ void run(sim::Simulation& fluid, const sim::Scene& scene, int frames) {
   }
 }
 
-/// Particles, saliency, two fields, and the report's and the account's main numbers, as bytes.
 std::string read_all(sim::Simulation& fluid) {
   std::string out;
   const auto add = [&](const auto& values) {
@@ -159,7 +158,6 @@ sim::Scene dam() {
 TEST_F(S18Restart, ListsThatHoldGoOnToo) { goes_on_bit_for_bit(Backend::Cpu, dam(), path_); }
 TEST_F(S18RestartGpu, ListsThatHoldGoOnToo) { goes_on_bit_for_bit(Backend::Cuda, dam(), path_); }
 
-/// Message of the error that resuming throws.
 std::string error_of(const sim::Scene& scene, sim::SimulationOptions options, const fs::path& path) {
   options.resume_from = path;
   try {

@@ -12,7 +12,7 @@ using sim::EffectKind;
 
 constexpr double d_fine = 0.05;  // spacing of level 0, m
 
-/// Particles of one level in a tank with slip walls.
+/// Fluid of one level at the start, in a tank with slip walls.
 struct Tank {
   int level = 0;                          ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;  ///< must be able to hold this level

@@ -106,9 +106,9 @@ inline const std::vector<std::string>& quantities() {
   return all;
 }
 
-/// base::Error at file:line if the quantity is missing or unknown, a key is unknown or comes twice, a
-/// sensor's place is missing or no number, a row's columns differ from the header's, or a cell is not a
-/// number.
+/// base::Error at file:line if the quantity, the gate or the source is missing, the quantity or a key is
+/// unknown, a key comes twice, a pressure's sensor has no height, a sensor's place is not a number above 0,
+/// there are no rows, a row's columns differ from the header's, or a cell is not a number.
 inline TruthFile parse_truth(const std::filesystem::path& path, const std::string& bytes) {
   static const std::vector<std::string> known{"quantity",
                                               "source",

@@ -58,7 +58,6 @@ State run(const Choice& choice) {
   return out;
 }
 
-/// Computes each state once.
 const State& still_water() {
   static const State state = run(still);
   return state;

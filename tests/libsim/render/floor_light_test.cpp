@@ -236,7 +236,7 @@ TEST_F(FloorLightGl, CrestsFocusAsSnellsLawSays) {
       const double crest = light_at(0), trough = light_at(half);
       EXPECT_GT(crest, 1.2);
       EXPECT_LT(trough, 0.9);
-      // 1 / light differs from 1 by depth over focal length, with opposite signs.
+      // At a crest and a trough 1 / light differs from 1 by depth over focal length, with opposite signs.
       const double expected = waves.widening(half) - waves.widening(0);
       EXPECT_NEAR(1 / trough - 1 / crest, expected, 0.15 * expected) << depth << " " << direction[0];
     }

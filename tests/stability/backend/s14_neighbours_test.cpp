@@ -216,7 +216,7 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
 SIM_TEST(S14NeighbourList, OfTwoSimulationsInOneThreadAreTheirOwn) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  // All points are in the middle cell of 27, which is a little wider than the margin.
+  // All points are in the middle one of 27 cells, whose width is a little above `edge`, the reach of a list.
   const Domain tank{{0, 0, 0}, {1, 1, 1}};
   const float edge = NeighbourList::margin * finest;
   const auto points_of = [&](unsigned seed) {
