@@ -83,7 +83,7 @@ class BidsRules {
     const std::vector<std::string> allowed{
         "README(\\.md)?|dataset_description\\.json|participants\\.(tsv|json)",
         "phenotype/[^/]+\\.(tsv|json)",
-        "code/.+",  // free
+        "code/.+",  // any name
         "sub-(" + label + ")/sub-\\1_sessions\\.(tsv|json)",
         folder + stem + "(_acq-" + label + ")?_(events|beh)\\.(tsv|json)",
         folder + stem + "(_recording-" + label + ")?_physio\\.(tsv\\.gz|json)",

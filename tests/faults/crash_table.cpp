@@ -57,7 +57,8 @@ struct Row {
   long calls = 0, ext4 = 0, posix = 0, failed = 0;
 };
 
-/// vip_study_app needs a window folder or its none.cpp. apps_test opens no window, so that it takes none.cpp.
+/// The message of a failure without numbers and without the path of the test's folder, so that equal causes
+/// are counted together.
 std::string cause_of(const std::string& line) {
   std::string cause;
   std::string said = line.substr(std::min(line.size(), line.find("): ") + 3), 160);

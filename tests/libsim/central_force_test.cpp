@@ -61,7 +61,8 @@ void a_particle_swings(Backend backend) {
   // 2 m above the centre along the axis, which adds no force.
   options.start = std::vector<ParticleState>{{0, 0, 4 + amplitude, 4, 6, 0, 0, 0}};
   const auto fluid = sim::make_simulation(space(omega, {0, 0, 1}), options);
-  // v -= Omega^2 dt x, x += dt v has the solution x_n = A cos((n + 1/2) theta) / cos(theta / 2).
+  // v -= Omega^2 dt x, x += dt v has the solution x_n = A cos((n + 1/2) theta) / cos(theta / 2) with the
+  // amplitude A.
   const double dt = 1.0 / 120;
   const double theta = 2 * std::asin(omega * dt / 2);
   EXPECT_NEAR(theta, omega * dt, 1e-5) << "the period is 2 pi / Omega but for the method's error";

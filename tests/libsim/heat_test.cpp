@@ -93,7 +93,7 @@ TEST(Heat, StepsAreAsShortAsConductionNeeds) {
   EXPECT_NEAR(sim::longest_step({{EffectKind::Heat, 0.05}}, 0.1).seconds, 0.2 * 0.01 / 0.05, 1e-12);
 }
 
-/// The pool of levels_helpers with water of 310 K in the half x < middle.
+/// A pool of the size of levels_test::Settled, with water of 310 K in the half x < middle.
 sim::Scene warm_pool(double expansion = 0.002) {
   const double d = levels_test::d;
   auto scene = fluid_test::tank({12 * d, 30 * d, 12 * d}, {12 * d, 16 * d, 12 * d}, 20);

@@ -80,7 +80,7 @@ sim::Scene pool_with_bodies() {
   return out;
 }
 
-/// Fluid of 1000 m2/s slumps by about g H^2 / (3 nu) = 1 mm/s in theory.
+/// Fluid of 1000 m2/s and height H slumps at about g H^2 / (3 nu) = 1 mm/s in theory.
 void thick_column_slumps_slowly(Backend backend, MethodKind method) {
   NEEDS_EFFECTS;
   Watched run(reported("visc"), backend, method, {0.3, 0.3, 0.5});

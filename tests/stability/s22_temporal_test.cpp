@@ -105,7 +105,7 @@ TEST(S22Temporal, SwitchesByTheFramesTimes) {
 
 struct DamRun {
   double density_max = 0;
-  double crowded = 0;                 ///< largest share of particles with another within 0.3 d
+  double crowded = 0;                 ///< largest share of particles with another particle within 0.3 d
   std::vector<double> x, y, kinetic;  ///< centre of mass, m, and mean of v^2 / 2, every 10 frames
   double solved = 0;                  ///< mean share of active particles
 };

@@ -20,7 +20,7 @@ struct Pool {
   int spacings = 21;                           ///< across the tank, in the start's level
   int core = 5;                                ///< core radius, in the same spacings
   int level = 0;                               ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the floor's middle
   double beta = 1;
   Backend backend = Backend::Cpu;

@@ -6,11 +6,11 @@
 
 namespace truth_test {
 
-/// A ball or a part of it, in an open cube of a tank.
+/// A ball or a part of a ball, in a cubic tank without a lid.
 struct Drop {
   double spacings = 8;                         ///< particles of the start's level per radius
   int level = 0;                               ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the drop's middle
   double beta = 1;
   double tension = 10;

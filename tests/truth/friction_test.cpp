@@ -20,7 +20,7 @@ constexpr int frames = 36;
 
 struct Plate {
   int level = 0;                               ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in metres, relative to the plate's middle
   double beta = 1;
   Backend backend = Backend::Cpu;

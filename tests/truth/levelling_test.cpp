@@ -15,7 +15,7 @@ constexpr double d_fine = 0.05;  // spacing of level 0, m
 /// Fluid of one level at the start, in a tank with slip walls.
 struct Tank {
   int level = 0;                          ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;  ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;  ///< must allow particles of this level
   bool mixed = false;                     ///< half of the fluid is at level 0
   double beta = 1;
   Backend backend = Backend::Cpu;

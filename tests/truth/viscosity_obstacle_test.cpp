@@ -19,7 +19,7 @@ constexpr double nu = 0.3;
 struct Turning {
   double spacings = 3;                         ///< particles of the start's level per radius of the sphere
   int level = 0;                               ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the sphere's middle
   double beta = 1;
   double stick = 1;

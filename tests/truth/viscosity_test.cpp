@@ -19,7 +19,7 @@ constexpr int frames = 12;  // frames, with two substeps each, in which the wave
 struct Wave {
   bool sticks = false;
   int level = 0;                               ///< level of the particles at the start
-  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the column's middle
   double beta = 1;
   Backend backend = Backend::Cpu;

@@ -292,8 +292,8 @@ SIM_TEST(SaliencyOfFluids, StillWaterAsksForNoFineParticlesOutsideTheFovea) {
       "still water after 90 frames: %zu of 8192 particles; of the interior mass %.3f asks for level 0, %.3f "
       "has it\n",
       places.size(), asked / mass, held / mass);
-  // The gate of 5 % is for water at rest (the test above); the percentiles stay larger for water that level
-  // changes stir.
+  // StillWaterIsNotFinestOutsideTheFovea allows 5 % in water at rest. Changes of level stir the water, so
+  // that more of it asks for the finest level.
   EXPECT_LT(asked, 0.12 * mass);
   EXPECT_LT(places.size(), 5000u);
 }

@@ -173,7 +173,7 @@ SIM_TEST(Sticking, ObstaclesThatLetSlipLeaveTheSameBitsAsNone) {
 
 SIM_TEST(Sticking, BetweenIsAShare) {
   NEEDS_EFFECTS;
-  // A lone particle beside the ball: across the normal its speed falls from v to v / (1 + stick nu dt / (d s)
+  // A lone particle beside the ball: its speed along the surface falls from v to v / (1 + stick nu dt / (d s)
   // face), with spacing d = 0.2 m, distance s = 0.1 m and face = 0.5625.
   float left[2];
   for (const int half : {0, 1}) {

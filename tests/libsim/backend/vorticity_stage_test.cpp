@@ -78,8 +78,8 @@ SIM_TEST(Vorticity, ACrowdOfMixedSizesHasTheCurlOfItsFlow) {
   EXPECT_NEAR(sum / inside, 6, 0.3);
 }
 
-/// A Lamb-Oseen vortex, largest curl 10 / s, core of 4 spacings, at two sizes: it gains c omega round its
-/// axis.
+/// A Lamb-Oseen vortex, largest curl 10 / s, core of 4 spacings, at two sizes. The acceleration round its
+/// axis must be the effect's coefficient times the curl.
 SIM_TEST(Vorticity, AVortexIsTurnedOnByItsOwnCurl) {
   NEEDS_EFFECTS;
   for (const float d : {0.05f, 0.1f}) {
