@@ -1,6 +1,7 @@
 #pragma once
 /// A study that takes milliseconds: consent to gaze and sharing, a personal question, two trials with gaze
-/// and head poses, free text. All data of a person carry a mark of their own.
+/// and head poses, free text. The texts of a person contain a mark of their own (mark()), and gaze and head
+/// poses a number of their own (place()).
 
 #include <filesystem>
 #include <string>
