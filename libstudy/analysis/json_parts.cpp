@@ -44,8 +44,8 @@ int interval_decimals(const std::array<double, 2>& interval, int decimals) {
 Json json_refused(const std::string& reason) { return {{"refused", reason}}; }
 
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods) {
-  static const base::Pattern column("\\bmethod(\\d{1,4})\\b"),
-      items("\\bitems? (\\d{1,4}(?:(?:, | and )\\d{1,4})*)"), item("(\\d{1,4})");
+  static const base::Pattern column("\\bmethod([0-9]{1,4})\\b"),
+      items("\\bitems? ([0-9]{1,4}((, | and )[0-9]{1,4})*)"), item("([0-9]{1,4})");
   const auto named = [&](const std::string& text, const base::Pattern& place, std::size_t first) {
     return place.replaced(text, [&](const base::Groups& found) {
       return methods.at(static_cast<std::size_t>(std::stoi(found[1])) - first);

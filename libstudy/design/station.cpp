@@ -10,10 +10,10 @@
 namespace study {
 
 std::optional<StationNumber> parse_station_number(const std::string& station) {
-  static const base::Pattern pattern("(?:.* )?([0-9]{1,9})/([0-9]{1,9})");
+  static const base::Pattern pattern("(.* )?([0-9]{1,9})/([0-9]{1,9})");
   const auto found = pattern.match(station);
   if (!found) return {};
-  const StationNumber out{std::stoi(found->at(1)), std::stoi(found->at(2))};
+  const StationNumber out{std::stoi(found->at(2)), std::stoi(found->at(3))};
   if (out.number < 1 || out.number > out.count || out.count > 999)
     throw base::Error(
         "--station " + station, "is not a station number",

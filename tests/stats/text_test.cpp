@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stats/base/pattern.hpp"
+
 namespace base {
 namespace {
 
@@ -62,6 +64,24 @@ TEST(Text, BlankTextHasNoVisibleCharacter) {
   EXPECT_TRUE(is_blank(""));
   EXPECT_TRUE(is_blank(" \t\r\n"));
   EXPECT_FALSE(is_blank(" a "));
+}
+
+TEST(Pattern, FindsMatchesAndTheirGroups) {
+  const Pattern number("([0-9]+)/([0-9]+)");
+  ASSERT_TRUE(number.match("2/15"));
+  EXPECT_EQ(number.match("2/15")->at(2), "15");
+  EXPECT_FALSE(number.match("2/15 ")) << "the whole text must match";
+  EXPECT_FALSE(number.match("x2/15"));
+  const auto all = number.all("1/2, then 34/56");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[1], (Groups{"34/56", "34", "56"}));
+  EXPECT_EQ(number.replaced("a 1/2 b 3/4", [](const Groups& g) { return g[2] + ":" + g[1]; }), "a 2:1 b 4:3");
+  EXPECT_EQ(Pattern("\\bmu\\b").replaced("mu mum emu mu.", [](const auto&) { return "x"; }), "x mum emu x.");
+  EXPECT_EQ(Pattern("x*").replaced("axb", [](const auto&) { return "-"; }), "-a--b-");
+  const std::string with_nul("a\0b1/2", 6);
+  EXPECT_EQ(number.all(with_nul).size(), 1u);
+  EXPECT_EQ(Pattern("(a)?b").match("b")->at(1), "") << "a group without a match is empty";
+  EXPECT_THROW(Pattern("("), std::invalid_argument);
 }
 
 }  // namespace
