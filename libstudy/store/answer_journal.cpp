@@ -26,7 +26,6 @@ AnswerJournal::AnswerJournal(Connection& database)
 AnswerJournal::~AnswerJournal() {
   if (unmarked_) try_mark();
   sqlite3_update_hook(database_.handle(), nullptr, nullptr);
-  sqlite3_rollback_hook(database_.handle(), nullptr, nullptr);
 }
 
 void AnswerJournal::follow() {
@@ -37,8 +36,6 @@ void AnswerJournal::follow() {
           static_cast<AnswerJournal*>(self)->changed_[table].insert(row);
       },
       this);
-  sqlite3_rollback_hook(
-      database_.handle(), [](void* self) { static_cast<AnswerJournal*>(self)->changed_.clear(); }, this);
 }
 
 /// If another program removed or changed the journal, sets the changed file aside and begins a new journal.
@@ -81,8 +78,10 @@ void AnswerJournal::write() {
 }
 
 void AnswerJournal::kept() {
-  // Cleared only here and at a rollback. A Store on a temporary copy never calls kept(), so each of its
-  // batches has the rows of all its earlier batches too: settle() commits only the last batch of the journal.
+  // Cleared only here. A Store on a temporary copy never calls kept(), so each of its batches has the rows of
+  // all its earlier batches too: settle() commits only the last batch of the journal. A rollback clears
+  // nothing either, because it would drop the rows of those batches. write() reads each row from the
+  // database, so a row that was rolled back is written as it was before, or not at all.
   changed_.clear();
   if (waiting_) blank_ = false;
   unmarked_ = unmarked_ || anew_ || waiting_;

@@ -49,8 +49,8 @@ class AnswerJournal {
   AnswerJournal(const AnswerJournal&) = delete;
   AnswerJournal& operator=(const AnswerJournal&) = delete;
 
-  /// Call before the commit: appends to the journal the rows that the open transaction changed. base::Error,
-  /// with the journal unchanged, if the journal cannot be written.
+  /// Call before the commit: appends to the journal the rows that were changed since the last kept().
+  /// base::Error, with the journal unchanged, if the journal cannot be written.
   void write();
   /// Call after the commit: marks the batch of the last write() in the journal as kept (committed). If the
   /// mark cannot be written, gives a warning; the next write(), require_written() and the destructor try
@@ -74,7 +74,7 @@ class AnswerJournal {
   sqlite::Connection& database_;
   JournalFile file_;
   std::function<void(const std::string&)> tell_;
-  std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // numbers of changed rows, by table
+  std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // rows changed since kept(), by table
   std::int64_t number_ = 0;                                          // number of the last batch written
   bool waiting_ = false;   // a batch was written, and its commit has not been confirmed by kept()
   bool unmarked_ = false;  // a batch was committed, but the journal lacks its "kept" mark
