@@ -105,6 +105,7 @@ TEST(HeadsetExports, OfAHeadThatStoodInAreBehaviourInBids) {
             "0.01\tn/a\tn/a\t0\t0\n0.02\t0.5\t0.25\t1\t1\n");
   const auto json = base::Json::parse(test::bytes_of(head.string() + ".json"));
   EXPECT_THAT(json["Description"].get<std::string>(), HasSubstr("No eye was recorded"));
+  EXPECT_FALSE(fs::exists(folder / "bids/sub-P01/ses-askingv1/motion")) << "no head pose";
   export_bids(path, folder / "few");
   EXPECT_FALSE(fs::exists(folder / "few/sub-P01/ses-askingv1/beh" / head.filename().concat(".tsv")));
 }

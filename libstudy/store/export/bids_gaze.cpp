@@ -268,6 +268,7 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     rows.push_back({seconds(times_ns.back())});
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
+  if (times_ns.empty()) return;  // no head pose, as in a session without a headset
   const double hz = rate_hz(database, session.id, times_ns);
   if (hz == 0) return;  // fewer than two distinct times, and the refresh rate is not known
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";

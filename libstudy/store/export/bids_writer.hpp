@@ -79,7 +79,8 @@ double rate_hz(sqlite::Connection& database, std::int64_t session, const std::ve
 
 /// The latest facts of a session's headset and its interpupillary distances as JSON; empty without a headset.
 Json headset_of(sqlite::Connection& database, std::int64_t session);
-/// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv").
+/// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv"); writes nothing without
+/// head poses.
 void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
 /// Writes gaze samples: of an eye tracker as a physiological recording ("recording-eye1_physio.tsv.gz"), of a
