@@ -27,9 +27,11 @@ class Listening {
 }  // namespace
 
 Recording::Recording(const Running& run)
-    : gaze_(run.parts.gaze && allowed(run) ? run.parts.gaze : nullptr),
+    : run_(run),
+      gaze_(run.parts.gaze && allowed(run) ? run.parts.gaze : nullptr),
       slots_(run.parts.slots),
-      seen_ns_(run.now_ns()) {
+      seen_ns_(run.now_ns()),
+      heard_ns_(seen_ns_) {
   if (gaze_) gaze_->start();
   if (slots_) slots_->start_slots(allowed(run));
 }
@@ -58,6 +60,11 @@ void Recording::watch(const std::vector<GazeSample>& samples) {
     if (sample.valid) seen_ns_ = std::max(seen_ns_, sample.sampled_ns);
     lost_ = lost_ || sample.sampled_ns - seen_ns_ > longest_gaze_gap_ns;
   }
+  // A silent tracker sends no invalid samples either. The times of arrival decide, because a sample may be
+  // much older than its arrival.
+  const std::int64_t now_ns = run_.now_ns();
+  if (!samples.empty()) heard_ns_ = now_ns;
+  lost_ = lost_ || now_ns - heard_ns_ > longest_gaze_gap_ns;
 }
 
 void Recording::require_gaze() const {

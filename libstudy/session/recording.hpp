@@ -12,7 +12,7 @@
 namespace study {
 
 /// An invalid sample of the eye tracker more than this time after the last valid sample cuts the trial, which
-/// is then shown again, ns.
+/// is then shown again, ns. So does an eye tracker that sends no sample for more than this time.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
 /// A change of the interpupillary distance (IPD).
@@ -41,7 +41,8 @@ class Recording {
   /// Returns the gaze samples, frame slots and changes of the IPD that were recorded since the last call.
   Recorded take();
   /// Throws TrialAgain if take() returned an invalid sample of the eye tracker that came more than
-  /// longest_gaze_gap_ns after the last valid sample (or after the start of the recording).
+  /// longest_gaze_gap_ns after the last valid sample (or after the start of the recording), or if take()
+  /// returned no sample of the eye tracker for more than longest_gaze_gap_ns.
   void require_gaze() const;
 
   /// Name of the gaze source that the fluid follows now. An eye tracker without permission to record is not
@@ -51,9 +52,11 @@ class Recording {
  private:
   void watch(const std::vector<GazeSample>& samples);
 
+  const Running& run_;
   GazeSource* gaze_;
   SlotSource* slots_;
-  std::int64_t seen_ns_;  ///< time of the last valid sample
+  std::int64_t seen_ns_;   ///< time of the last valid sample
+  std::int64_t heard_ns_;  ///< time of the last take() that returned a sample
   bool lost_ = false;
   std::optional<double> ipd_mm_;
 };

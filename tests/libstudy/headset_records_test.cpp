@@ -26,7 +26,7 @@ using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
 /// An eye tracker that delivers one sample at each read. `loses` returns true for the times at which it does
-/// not see the eyes.
+/// not see the eyes. It then delivers an invalid sample, or none if `silent` is true.
 class Eyes final : public GazeSource {
  public:
   explicit Eyes(const Clock& clock) : clock_(clock) {}
@@ -34,12 +34,14 @@ class Eyes final : public GazeSource {
   void start() override {}
   std::vector<GazeSample> take() override {
     GazeSample sample = test::ray_sample(clock_.now_ns());
-    if (loses && loses(sample.sampled_ns)) sample = {sample.sampled_ns, {}, false, {}, false, {}};
-    return {sample};
+    if (!loses || !loses(sample.sampled_ns)) return {sample};
+    if (silent) return {};
+    return {{sample.sampled_ns, {}, false, {}, false, {}}};
   }
   void stop() override {}
 
   std::function<bool(std::int64_t)> loses;
+  bool silent = false;
 
  private:
   const Clock& clock_;
@@ -135,13 +137,16 @@ TEST(HeadsetRecords, HoldWhatHappenedToTheHeadset) {
 }
 
 TEST(HeadsetRecords, EyesLostForTooLongCutATrialAndAreNoted) {
-  for (const int lost_ms : {80, 200}) {
+  for (const auto& [lost_ms, silent] :
+       {std::pair{80, false}, std::pair{200, false}, std::pair{80, true}, std::pair{200, true}}) {
+    SCOPED_TRACE(silent ? "no samples" : "invalid samples");
     Worn worn(1);
+    worn.eyes.silent = silent;
     std::int64_t begun_ns = -1;
-    worn.eyes.loses = [&](std::int64_t now_ns) {
+    worn.eyes.loses = [&, lost = lost_ms](std::int64_t now_ns) {
       if (begun_ns < 0) begun_ns = now_ns;
       const std::int64_t gone_ms = (now_ns - begun_ns) / 1'000'000;
-      return gone_ms > 200 && gone_ms <= 200 + lost_ms;
+      return gone_ms > 200 && gone_ms <= 200 + lost;
     };
     worn.run();
     const bool cut = lost_ms > 100;
