@@ -204,8 +204,9 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   {
     const std::lock_guard held(mutex_);
     facts_.rate = rate;
-    doubted_ |= meter.repeated() > 0 || meter.off_grid() > 0;
-    facts_.trusted = session_->times_convert() && !doubted_;
+    // Asked anew in each slot, because the meter subtracts the steps that a change of the rate took off the
+    // grid, and because a new session has a new meter.
+    facts_.trusted = session_->times_convert() && meter.repeated() == 0 && meter.off_grid() == 0;
     facts_.last = slot;
     facts_.views = record.views;
     last_system_ns_ = system_ns();

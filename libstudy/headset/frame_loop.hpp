@@ -47,7 +47,8 @@ struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
   /// True: the slots' predicted times convert to the session's clock, and so far every step between two
-  /// predicted times was positive and within a tenth of a period of a whole number of periods.
+  /// predicted times of this session was positive and within a tenth of a period of a whole number of
+  /// periods. Steps during a change of the refresh rate do not count once the change is detected.
   bool trusted = false;
   int world = 0;  ///< as HeadsetRecord::world
   HeadsetSlot last;
@@ -163,7 +164,6 @@ class FrameLoop {
   HeadsetSlot came_on_;             ///< first slot of the shown picture
   std::optional<CutCause> unseen_;  ///< why a shown picture could not be seen
   bool running_ = false, stopping_ = false;
-  bool doubted_ = false;       ///< predicted times repeated, or were not multiples of the period apart
   bool runtime_ends_ = false;  ///< the runtime shuts down: no new session is possible
   SessionFacts reported_;
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move

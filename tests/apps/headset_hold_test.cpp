@@ -151,6 +151,18 @@ TEST_F(HeadsetHoldGl, TheProtocolsRefreshRateIsAskedForAndMet) {
   EXPECT_EQ(display.grade(), study::TimingGrade::Compositor);
 }
 
+TEST_F(HeadsetHoldGl, TheGradeRecoversAfterAChangeOfTheRateAndInANewSession) {
+  for (const auto& [trouble, hz] :
+       {std::pair{"at=60:rate/72", 72.0}, std::pair{"at=60:repeat,90:lost_now", 90.0}}) {
+    use_here(std::string("size=32x32;") + trouble);
+    study::HeadsetDisplay display(study::SlotDrive::Caller, {});
+    study::HeadsetClock clock(display);
+    clock.wait_until(clock.now_ns() + 3'000'000'000);
+    EXPECT_NEAR(display.measured_hz(), hz, 0.5) << trouble;
+    EXPECT_EQ(display.grade(), study::TimingGrade::Compositor) << trouble;
+  }
+}
+
 TEST_F(HeadsetHoldGl, ARefreshRateThatDoesNotComeStopsTheProgram) {
   use_here("size=32x32;ignores_rate=1");
   EXPECT_THAT(
