@@ -221,19 +221,22 @@ std::string level_of(const Design& design, const Cell& cell, const std::string& 
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
 }
 
-/// Refuses a factor if more than half (rounded up) of a group's cells share a level: every order then has
+/// Refuses a factor if more than half (rounded up) of a group's trials share a level: every order then has
 /// neighbours with this level.
 void check_never_adjacent(const base::TomlTable& table, const Design& design) {
   const auto group = cell_groups(design).front();
+  const auto repetitions = static_cast<std::size_t>(design.repetitions);
+  const std::size_t trials = repetitions * group.size();
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
     std::map<std::string, std::size_t> count;
     for (const int cell : group)
-      ++count[level_of(design, design.cells[static_cast<std::size_t>(cell)], design.never_adjacent[i])];
+      count[level_of(design, design.cells[static_cast<std::size_t>(cell)], design.never_adjacent[i])] +=
+          repetitions;
     for (const auto& [level, times] : count) {
-      if (times > (group.size() + 1) / 2) {
+      if (times > (trials + 1) / 2) {
         table.fail_at("never_adjacent", i,
-                      "cannot be satisfied: " + std::to_string(times) + " of " +
-                          std::to_string(group.size()) + " trials have " + level,
+                      "cannot be satisfied: " + std::to_string(times) + " of " + std::to_string(trials) +
+                          " trials have " + level,
                       "remove this factor");
       }
     }

@@ -172,6 +172,22 @@ TEST(Factors, OrderMayKeepLevelsApart) {
   const Plan plan = make_plan(protocol, "P01", 1, 0);
   for (std::size_t i = 5; i < plan.trials.size(); ++i)
     EXPECT_NE(plan.trials[i].first, plan.trials[i - 1].first) << i;
+  // Four of seven cells have the content dam: an order exists for one trial of each cell, but not for ten.
+  std::string cells;
+  for (const char* cell :
+       {"none dam", "h33 dam", "h50 dam", "h67 dam", "h100 drop", "h150 drop", "none drop"}) {
+    const std::string words = cell;
+    const std::size_t space = words.find(' ');
+    cells += "[[combination]]\nhitch = \"" + words.substr(0, space) + "\"\ncontent = \"" +
+             words.substr(space + 1) + "\"\n\n";
+  }
+  const std::string apart =
+      changed(changed(changed(hitches_text, "vary = \"between\"", "vary = \"within\""), "[design]",
+                      cells + "[design]"),
+              "order = \"shuffle\"", "order = \"constrained\"\nnever_adjacent = [\"content\"]");
+  EXPECT_THAT(error_of(apart), HasSubstr("40 of 70 trials have dam"));
+  const std::string once = changed(apart, "repetitions = 10", "repetitions = 1");
+  make_plan(read(changed(once, "break_every = 20", "break_every = 5")), "P01", 1, 0);
 }
 
 TEST(Factors, RefuseWhatTheyDoNotUnderstand) {
