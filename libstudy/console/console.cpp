@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "libstudy/console/console_text.hpp"
-#include "libstudy/protocol/method_claims.hpp"
 #include "libstudy/store/names.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -58,10 +57,10 @@ void Console::begin(const OpenSession& session) {
   verdicts_.clear();
   say(fmt::format("{}: {} steps of {} left, {}; disk {:.1f} GB free", session.plan.participant,
                   session.units.size(), session.planned, left(), 1e-3 * free_mb(database_)));
+  // Names no hypothesis: vip-stats reads the plan that lists them, and a session does not know it.
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
-           ? "; " + ids_with(shipped_claims(), &stats::MethodClaim::needs_gaze) +
-                 " are not testable without tracked gaze"
+           ? "; hypotheses that need tracked gaze are not testable"
            : ""));
   say("keys: p pause, r repeat, x exclude, n note, e end, m method and setting, ? help");
 }

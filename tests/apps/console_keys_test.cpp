@@ -60,6 +60,13 @@ class ConsoleTest : public ::testing::Test {
   study::Console console_{protocol_, store_, folder_.path() / "s.db", [this] { return idle_s_; }};
 };
 
+TEST_F(ConsoleTest, SaysThatTrackedGazeIsMissingAndNamesNoHypothesisOfAPlanThatItDoesNotKnow) {
+  EXPECT_THAT(lines(), HasSubstr("gaze: none\n"));
+  protocol_.needs_gaze = true;
+  console_.begin(session());
+  EXPECT_THAT(lines(), HasSubstr("gaze: none; hypotheses that need tracked gaze are not testable\n"));
+}
+
 TEST_F(ConsoleTest, HidesTheSettingUntilItIsRevealedAndLogsThat) {
   console_.begins(first_trial());
   study::UnitDone done{"P01", first_trial().plan, 1, {study::test::verdict()}};
