@@ -116,7 +116,7 @@ class Console {
     std::int64_t first_scheduled_ns = 0, first_shown_ns = 0, last_scheduled_ns = 0, last_shown_ns = 0;
     double worst_late_ms = 0;
     std::string strip;  ///< one strip_sign() per half second
-    std::int64_t strip_scheduled_ns = 0, strip_shown_ns = 0, strip_frames = 0;
+    std::int64_t strip_scheduled_ns = 0, strip_shown_ns = 0;
   };
   Course course_;
 };
