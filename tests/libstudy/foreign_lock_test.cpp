@@ -1,4 +1,6 @@
 /// Another program keeps the database locked: a session waits, and loses nothing if it is asked to give up.
+/// And the program's own lock stays while it opens the database once more.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -6,6 +8,7 @@
 #include <unistd.h>
 
 #include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/page_file.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -115,6 +118,36 @@ TEST_F(ForeignLock, AnAnswerThatCannotBeCommittedIsKeptForTheNextOpening) {
   EXPECT_EQ(answers(), 1);
   EXPECT_EQ(again.open_runs().at(0).sessions.at(0).done, 1u);
   EXPECT_EQ(Connection(path_, Open::Read).text("SELECT words FROM note"), "said while it waited");
+}
+
+/// True if another process sees a lock of this process on the file.
+bool is_locked(const fs::path& path) {
+  const pid_t process = ::fork();
+  if (process == 0) {
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    const int file = ::open(path.c_str(), O_RDWR);
+    ::_exit(::fcntl(file, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  return status == 0;
+}
+
+// Beside a database of schema 1 lies a journal that records an empty file: the database holds nothing.
+TEST(OwnLock, StaysWhenADatabaseThatHoldsNothingIsRefused) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "young.db";
+  Connection young(path, Open::Create);
+  young.execute("PRAGMA application_id = " + std::to_string(database_application_id) +
+                "; PRAGMA user_version = 1; CREATE TABLE trial (a); BEGIN IMMEDIATE");
+  std::string journal(salvaging::rollback_magic);
+  journal.resize(512, '\0');
+  base::write_file_atomically(path.string() + "-journal", journal);
+  ASSERT_TRUE(is_locked(path));
+  EXPECT_THAT([&] { open_database(path, Open::Read, read_schema_steps()); },
+              ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
+  EXPECT_TRUE(is_locked(path));
 }
 
 }  // namespace

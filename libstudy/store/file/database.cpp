@@ -138,12 +138,31 @@ bool was_empty_before(const fs::path& journal) {
          salvaging::u32(head, 16) == 0;
 }
 
+bool has_bytes(const fs::path& path) {
+  std::error_code ignored;
+  const auto bytes = fs::file_size(path, ignored);
+  return !ignored && bytes > 0;
+}
+
+/// holds_nothing() for a file that begins with `head`, at most header_bytes bytes.
+bool holds_nothing(const fs::path& path, const std::string& head) {
+  if (!has_bytes(path)) return true;
+  if (!was_empty_before(path.string() + "-journal")) return false;
+  // The journal records an empty file. If the file is a vip-study database of a schema above 1, it had
+  // commits already, so the journal belongs to another file.
+  return head.size() < salvaging::header_bytes || !head.starts_with(salvaging::database_magic) ||
+         salvaging::u32(head, salvaging::application_at) != database_application_id ||
+         salvaging::u32(head, salvaging::version_at) <= 1;
+}
+
 /// base::Error unless the file is a database of vip-study whose schema is not newer than `newest`. With
-/// Open::Create, an empty database is accepted too.
-void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
+/// Open::Create, an empty database is accepted too. `head`: the file's first bytes as Connection::header()
+/// read them, because opening and closing the file here would release SQLite's locks.
+void recognise(const fs::path& path, const std::string& head, const Identity& found, Open how,
+               std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
   if (blank && how == Open::Create) return;
-  if (holds_nothing(path)) {
+  if (holds_nothing(path, head)) {
     throw base::Error(path.string(),
                       "holds nothing: it is empty, or the command that was making it was cut off",
                       "run that command (vip-study run or merge) again: it creates the file");
@@ -161,18 +180,11 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
   }
 }
 
-bool has_bytes(const fs::path& path) {
-  std::error_code ignored;
-  const auto bytes = fs::file_size(path, ignored);
-  return !ignored && bytes > 0;
-}
-
 /// base::Error if the header in the file itself is not that of a vip-study database. Called before SQLite
 /// uses the log or journal. The first commit writes the header into the file, never only into a log.
-void recognise_header(Connection& database, Open how, std::size_t newest) {
-  const std::string head = database.header();
+void recognise_header(const fs::path& path, const std::string& head, Open how, std::size_t newest) {
   if (head.empty() && how == Open::Create) return;
-  const fs::path journal = database.path().string() + "-journal";
+  const fs::path journal = path.string() + "-journal";
   Identity found{0, 0, false};
   if (head.size() == salvaging::header_bytes && head.starts_with(salvaging::database_magic)) {
     found.application = salvaging::u32(head, salvaging::application_at);
@@ -182,7 +194,7 @@ void recognise_header(Connection& database, Open how, std::size_t newest) {
     found.empty = !has_bytes(journal);
   }
   if (how == Open::Create && was_empty_before(journal)) return;
-  recognise(database.path(), found, how, newest);
+  recognise(path, head, found, how, newest);
 }
 
 /// Makes the backup before an upgrade, completely or not at all. A kill leaves a draft, which the next
@@ -294,15 +306,11 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
 }  // namespace
 
 bool holds_nothing(const fs::path& path) {
-  if (!has_bytes(path)) return true;
-  if (!was_empty_before(path.string() + "-journal")) return false;
-  // The journal records an empty file. If the file is a vip-study database of a schema above 1, it had
-  // commits already, so the journal belongs to another file.
   std::string head(salvaging::header_bytes, '\0');
-  const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), salvaging::header_bytes));
-  return !whole || !head.starts_with(salvaging::database_magic) ||
-         salvaging::u32(head, salvaging::application_at) != database_application_id ||
-         salvaging::u32(head, salvaging::version_at) <= 1;
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), salvaging::header_bytes);
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return holds_nothing(path, head);
 }
 
 SchemaSteps read_schema_steps() {
@@ -334,7 +342,8 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   const fs::path path = real_file(given);
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
-  recognise_header(*database, how, steps.size());
+  const std::string head = database->header();
+  recognise_header(path, head, how, steps.size());
   // Lets SQLite copy no page of an existing log into the file: a reader changes no file, and a writer first
   // compares the database with the journal of answers (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
@@ -344,7 +353,7 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
     database->distrust();
   }
   const Identity found = identify(*database);
-  recognise(path, found, how, steps.size());
+  recognise(path, head, found, how, steps.size());
   check_schema(*database, steps, found.version);
   database->recognise();
   database->check_integrity();

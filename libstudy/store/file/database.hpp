@@ -43,7 +43,8 @@ std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& p
                                                   const sqlite::Waiting& waiting = {});
 
 /// True if the file never had a commit: it is missing or empty, or its creation was interrupted and SQLite's
-/// journal beside it makes it empty again. Open::Create overwrites such a file.
+/// journal beside it makes it empty again. Open::Create overwrites such a file. Opens and closes the file, so
+/// the process must have no connection to it.
 bool holds_nothing(const std::filesystem::path& path);
 
 /// Upgrades a database to the newest schema of `steps`, each step in one transaction. If `steps` are all
