@@ -13,11 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/analysis/ptpe/calibration_history.hpp"
 #include "libstudy/analysis/ptpe/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/read/task_answers.hpp"
 #include "libstudy/store/store.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/pilot_database.hpp"
@@ -154,6 +156,22 @@ TEST(VipStatsE2e, KeepsEveryCalibration) {
   EXPECT_NE(refused.out.find("history.jsonl:2"), std::string::npos) << refused.out;
   EXPECT_EQ(study::test::bytes_of(toml), newest);
   EXPECT_EQ(study::test::bytes_of(history), text);
+}
+
+TEST(CalibrationHistory, ThatEndsWithinALineIsRefusedWithTheNumberOfThatLine) {
+  const TemporaryFolder folder;
+  const auto toml = folder / "fitted.toml", history = study::history_of(toml);
+  for (int i = 0; i < 2; ++i) study::append_calibration(toml, "a = 1\n", base::Json::object());
+  std::string text = study::test::bytes_of(history);
+  text.pop_back();
+  base::write_file_atomically(history, text);
+  try {
+    study::append_calibration(toml, "a = 1\n", base::Json::object());
+    FAIL();
+  } catch (const base::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("history.jsonl:2: ends within a line"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(VipStatsE2e, FitsAtOneTimeKeepEachOthersCalibrations) {

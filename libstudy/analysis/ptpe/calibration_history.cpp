@@ -26,7 +26,9 @@ Json last_of(const std::filesystem::path& path, const std::string& record) {
   std::istringstream lines(record);
   std::string line, before;
   Json last;
-  for (int number = 1; std::getline(lines, line); ++number) {
+  int number = 0;
+  while (std::getline(lines, line)) {
+    ++number;
     last = base::parse_json(line);
     if (!last.is_object() || !last.contains("file_sha256") || !last.contains("previous_sha256"))
       damaged(path, number, "does not describe a calibration");
@@ -34,7 +36,7 @@ Json last_of(const std::filesystem::path& path, const std::string& record) {
       damaged(path, number, "does not follow the line before it");
     before = line;
   }
-  if (!record.empty() && record.back() != '\n') damaged(path, 0, "ends within a line");
+  if (!record.empty() && record.back() != '\n') damaged(path, number, "ends within a line");
   return last;
 }
 
