@@ -126,12 +126,31 @@ std::int64_t count_gaze(Connection& database, const std::string& person) {
   return row.bind_all(person).step() ? row.integer(0) : 0;
 }
 
-std::set<std::string> people_with_gaze(Connection& database) {
-  return people_with_gaze_in(database, "session");
+GazeRows gaze_rows(Connection& database) {
+  GazeRows rows;
+  for (const std::string table : all_tables) {
+    const std::string joins = table == "gaze_validation"
+                                  ? ""
+                                  : " JOIN presentation USING (presentation_id) JOIN trial USING (trial_id)";
+    Statement row(database, "SELECT uid, count(*) FROM " + table + joins +
+                                " JOIN session USING (session_id) GROUP BY uid");
+    while (row.step()) rows[row.text(0)] += row.integer(1);
+  }
+  return rows;
 }
 
-std::set<std::string> people_without_gaze(Connection& database) {
-  return persons(database, "SELECT DISTINCT person FROM " + refused_now);
+std::set<std::string> people_with_less_gaze(Connection& database, const GazeRows& before) {
+  GazeRows now = gaze_rows(database);
+  std::set<std::string> found;
+  Statement row(database, "SELECT uid, person FROM session WHERE session_id IN (SELECT session_id FROM " +
+                              refused_now +
+                              " UNION SELECT session_id FROM permission_change WHERE what = 'gaze' AND "
+                              "granted = 0)");
+  while (row.step()) {
+    const auto rows = before.find(row.text(0));
+    if (rows != before.end() && now[rows->first] < rows->second) found.insert(row.text(1));
+  }
+  return found;
 }
 
 GazeElsewhere find_gaze_elsewhere(Connection& database, const std::string& person) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,10 +32,13 @@ std::string gaze_allowed_sql(const std::string& table);
 bool is_gaze_allowed(sqlite::Connection& database, std::int64_t session);
 
 std::int64_t count_gaze(sqlite::Connection& database, const std::string& person);
-std::set<std::string> people_with_gaze(sqlite::Connection& database);
-/// The persons with at least one session in which gaze is not allowed now: refused, not answered or not
-/// asked.
-std::set<std::string> people_without_gaze(sqlite::Connection& database);
+/// For each session with gaze data, by session.uid: the number of its gaze samples, head poses and
+/// validations.
+using GazeRows = std::map<std::string, std::int64_t>;
+GazeRows gaze_rows(sqlite::Connection& database);
+/// The persons with a session that has less gaze data than `before`, and in which gaze is not allowed now or
+/// was refused earlier.
+std::set<std::string> people_with_less_gaze(sqlite::Connection& database, const GazeRows& before);
 
 /// Files outside the database that may still contain gaze of a person. The experimenter must delete these
 /// files, because no command does.

@@ -166,6 +166,24 @@ TEST(Refusal, InAMergeNamesTheExportsBesideTheResult) {
   EXPECT_THAT(merge({other}, path).beside.left, IsEmpty());
 }
 
+TEST(Refusal, InAMergeNamesNoExportsOfAPersonWhoseGazeStays) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder), other = folder / "other.db";
+  {
+    Store store(path, Open::Write);
+    test::add_people(store, test::asking_protocol(false), {{"P01", {}, 1}});  // is not asked about gaze
+  }
+  fs::copy_file(path, other);
+  export_csv(path, folder / "csv", {.words = false, .gaze = true});
+  EXPECT_THAT(merge({other}, path).beside.left, IsEmpty());
+  EXPECT_EQ(recorded_of(path, "P01").size(), 6u);
+  // A refusal deletes the gaze before it also where gaze is allowed again.
+  change_permissions(other, "P01", {.gaze = false, .sharing = {}});
+  change_permissions(other, "P01", {.gaze = true, .sharing = {}});
+  EXPECT_THAT(merge({other}, path).beside.left, ElementsAre(HasSubstr("csv on ")));
+  EXPECT_THAT(recorded_of(path, "P01"), IsEmpty());
+}
+
 /// The database has gaze rows of a person who refuses, as a kill, an earlier version or a fault may leave
 /// them.
 TEST(Refusal, KeepsGazeOutOfExportsThoughItStandsInTheDatabase) {

@@ -208,14 +208,10 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
 }
 
 /// Adds to beside.left the backups and exports of `into` that may still contain gaze which this merge
-/// deleted: those of persons with gaze in `into` before the merge (had_gaze) who now have a session in which
-/// gaze is not allowed.
-void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
-  std::set<std::string> deleted;
-  for (const std::string& person : people_without_gaze(into)) {
-    if (had_gaze.contains(person)) deleted.insert(person);
-  }
-  for (std::string& line : name_gaze_elsewhere(into, deleted)) beside.left.push_back(std::move(line));
+/// deleted. `before`: the gaze data of `into` before the merge.
+void name_refused(Connection& into, const GazeRows& before, CleanUp& beside) {
+  for (std::string& line : name_gaze_elsewhere(into, people_with_less_gaze(into, before)))
+    beside.left.push_back(std::move(line));
 }
 
 }  // namespace
@@ -237,7 +233,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
   prepare_rewrite(*target, withdrawn);
-  const std::set<std::string> had_gaze = people_with_gaze(*target);
+  const GazeRows gaze_before = gaze_rows(*target);
   target->execute("PRAGMA secure_delete = ON");
   // Other programs can register exports in `into` despite the WriterLock. So copy_from() adds the registered
   // exports after it has locked the database.
@@ -249,7 +245,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
   });
   lock.keep();
   merge.beside = clean_up_all(*target);
-  name_refused(*target, had_gaze, merge.beside);
+  name_refused(*target, gaze_before, merge.beside);
   return merge;
 }
 
