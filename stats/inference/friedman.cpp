@@ -39,9 +39,10 @@ Result<Friedman> friedman_test(std::span<const double> rows, int k) {
 
   out.df1 = out.df;
   out.df2 = (n - 1) * out.df1;
-  // Ranks are multiples of one half, so `squares`, and without ties `spread`, have no rounding: rest = 0
-  // means that all participants have the same order.
-  const double rest = n * out.df1 * spread - 12 * squares;
+  // rest = n (k - 1) spread - 12 squares, with spread multiplied out: ties / (k - 1) may round, and then rest
+  // is not exactly 0 where all participants have the same order. Ranks are multiples of one half, so no term
+  // here rounds.
+  const double rest = n * (n * conditions * (conditions * conditions - 1) - ties) - 12 * squares;
   out.iman_davenport_f = rest > 0 ? (n - 1) * 12 * squares / rest : std::numeric_limits<double>::infinity();
   out.iman_davenport_p = fisher_upper(out.iman_davenport_f, out.df1, out.df2);
   return out;

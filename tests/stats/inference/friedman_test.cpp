@@ -203,6 +203,10 @@ TEST(RepeatedMeasures, OneOrderForAllIsCompleteConcordance) {
   EXPECT_NEAR(f->p, std::exp(-3.0), 1e-15) << "chi-square of 6 with 2 df";
   const auto tied = friedman_test(Values{1, 1, 3, 4, 4, 9, 0, 0, 8}, 3);
   EXPECT_NEAR(tied->kendall_w, 1, 1e-15) << "ties everywhere, and all agree";
+  Values pairs;
+  for (int person = 0; person < 9; ++person) pairs.insert(pairs.end(), {1, 1, 2, 2, 3, 3});
+  EXPECT_EQ(friedman_test(pairs, 6)->iman_davenport_f, std::numeric_limits<double>::infinity())
+      << "9 people with 3 ties each: 162 / 5 is no double";
 }
 
 TEST(RepeatedMeasures, RefuseWhatHasNoAnswer) {
