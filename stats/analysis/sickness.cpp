@@ -38,6 +38,11 @@ SicknessChange compare_sickness(std::span<const ExactMean> before, std::span<con
   out.before = describe(scores(before, weight));
   out.after = describe(scores(after, weight));
   const auto differences = exact_differences(after, before);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const int values = !std::isnan(before[i].sum) + !std::isnan(after[i].sum);
+    out.n += values == 2 ? 1 : 0;
+    out.n_missing += values == 1 ? 1 : 0;
+  }
   if (!differences) {
     const Refusal refusal{differences.reason()};
     out.change = refusal;
@@ -46,9 +51,6 @@ SicknessChange compare_sickness(std::span<const ExactMean> before, std::span<con
     return out;
   }
   const std::vector<double> changes = weighted(differences->values(), weight);
-  out.n = changes.size();
-  for (std::size_t i = 0; i < before.size(); ++i)
-    out.n_missing += std::isnan(before[i].sum) != std::isnan(after[i].sum) ? 1 : 0;
   out.change = describe(changes);
   out.bootstrap =
       bootstrap_interval(changes, mean_statistic(),

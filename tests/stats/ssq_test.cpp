@@ -107,5 +107,15 @@ TEST(SicknessChange, WithoutAnyChangeThereIsNoTest) {
   EXPECT_FALSE(change.bootstrap);
 }
 
+TEST(SicknessChange, CountsParticipantsAlsoWhereTheirChangesAreRefused) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto change =
+      compare_sickness(std::vector<ExactMean>{{0}, {infinite}, {2}, {missing}},
+                       std::vector<ExactMean>{{1}, {1}, {missing}, {missing}}, 1, quick_plan());
+  EXPECT_FALSE(change.change);
+  EXPECT_EQ(change.n, 2u);
+  EXPECT_EQ(change.n_missing, 1u);
+}
+
 }  // namespace
 }  // namespace stats
