@@ -36,8 +36,13 @@ void sync_folder_of(const fs::path& path) { sync_folder(folder_of(path)); }
 void sync_file(const fs::path& path) { sync(path, O_NONBLOCK); }
 
 void sync_folders(const fs::path& folder) {
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_directory() && !entry.is_symlink()) sync_folder(entry.path());
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_directory() && !entry.is_symlink()) sync_folder(entry.path());
+  } catch (const fs::filesystem_error& error) {
+    throw Error(folder.string(), "cannot be searched for folders: " + error.code().message(),
+                "check its permissions, and run the command again");
+  }
   sync_folder(folder);
 }
 

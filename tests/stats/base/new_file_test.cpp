@@ -12,6 +12,7 @@
 #include <fstream>
 #include <set>
 
+#include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -141,6 +142,18 @@ TEST(NewFile, ADiskThatFillsLeavesTheOldFileAndNoOther) {
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(read_file(folder / "a", 10), "old");
   EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(SyncFolders, AFolderThatIsNotThereIsAnErrorThatNamesIt) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder / "a" / "b");
+  EXPECT_NO_THROW(sync_folders(folder.path()));
+  try {
+    sync_folders(folder / "gone");
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with((folder / "gone").string())) << error.what();
+  }
 }
 
 TEST(FileLock, DoesNotFollowALink) {
