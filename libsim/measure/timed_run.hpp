@@ -15,7 +15,7 @@ namespace measure {
 /// progress line.
 std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
 
-/// Processor and number of cores.
+/// Processor model and number of logical processors.
 std::string processor();
 
 /// Density error and numbers of neighbours, averaged over states spread over the run, and the largest density

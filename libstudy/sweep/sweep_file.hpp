@@ -20,7 +20,7 @@ inline constexpr std::int64_t sweep_application_id = 0x56695053;
 /// Machine, program and scene file with which a cell was run. Only cells in which all three are equal are
 /// compared.
 struct SweepOrigin {
-  std::string machine;  ///< processor, cores, device and threads
+  std::string machine;  ///< processor model, logical processors, device and threads
   std::string program;  ///< version of the program and digest of its binary
   std::string scene_sha256;
   auto operator<=>(const SweepOrigin&) const = default;

@@ -25,7 +25,7 @@ std::string describe_machine() {
   utsname system{};
   uname(&system);
   return std::string(system.sysname) + " " + system.release + " " + system.machine + "; " + processor() +
-         "; " + std::to_string(std::thread::hardware_concurrency()) + " cores";
+         "; " + std::to_string(std::thread::hardware_concurrency()) + " logical processors";
 }
 
 std::string local_time_zone() {
