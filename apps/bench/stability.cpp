@@ -118,13 +118,18 @@ void turn(const CaseRun& job, const StabilityOptions& options, measure::MapCell&
   cell.failed = limit.failed;
 }
 
-/// Fills job.cells. Calls `step` once after the run at the usual numbers and once for each knob.
+/// Fills job.cells; a case that scales no quantity gets no cell for the scale. Calls `step` once after the
+/// run at the usual numbers and once for each knob.
 void measure(CaseRun& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
   // Errors of this run are not caught: if the back end fails, its error ends the command.
   const std::string at_its_own = failure(run(one, job.setting));
   step();
   for (const measure::Knob knob : measure::all_knobs) {
+    if (knob == measure::Knob::Scale && *one.scaled == '\0') {
+      step();
+      continue;
+    }
     measure::MapCell cell{.case_id = one.id,
                           .title = one.title,
                           .method = sim::method_name(job.setting.method),

@@ -61,10 +61,11 @@ double margin_of(const MapCell& cell);
 struct StabilityMap {
   std::vector<std::string> cases;    ///< ids, in the order of the rows
   std::vector<std::string> methods;  ///< names, in the order of the columns
-  std::vector<MapCell> cells;        ///< none for a case that does not apply to a method
-  double most = 0;                   ///< largest factor tried
-  double resolution = 0;             ///< largest factor between what passed and what failed
-  std::string circumstances;         ///< machine, back end, size, seed
+  /// No cells for a case that does not apply to a method; no scale for a case that scales no quantity.
+  std::vector<MapCell> cells;
+  double most = 0;            ///< largest factor tried
+  double resolution = 0;      ///< largest factor between what passed and what failed
+  std::string circumstances;  ///< machine, back end, size, seed
   /// Effects of the water, each as text; with effects, a case fails only by its stability criteria.
   std::vector<std::string> effects = {};
 };

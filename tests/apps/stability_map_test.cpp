@@ -121,6 +121,15 @@ TEST_F(StabilityE2e, MapsOneCaseQuickly) {
   EXPECT_THAT(base::read_file(path("map.svg"), 1 << 20), HasSubstr("<svg"));
 }
 
+TEST_F(StabilityE2e, ACaseThatScalesNothingHasNoScale) {
+  const auto ended = table("stability --case S12 --method HiRes --quick --csv " + path("map.csv"));
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  const auto map = rows("map.csv");
+  ASSERT_EQ(map.size(), 2u);
+  EXPECT_EQ(map[0].at("knob"), "frame_step");
+  EXPECT_EQ(map[1].at("knob"), "iterations");
+}
+
 TEST_F(StabilityE2e, MapsACaseInWaterWithEffects) {
   NEEDS_EFFECTS;
   const auto ended =
