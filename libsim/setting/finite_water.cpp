@@ -35,7 +35,8 @@ GuardCounts sum(const GuardCounts& a, const GuardCounts& b) {
 std::string in_words(const GuardCounts& met) {
   const std::string parts =
       part_of(met.speed_limited, "particle-substep", "particle-substeps", "braked by the limit on speed") +
-      part_of(met.coincident_pairs, "pair", "pairs", "of particles in one place") +
+      part_of(met.coincident_pairs, "neighbour", "neighbours",
+              "in a particle's own place (counted in each projection)") +
       part_of(met.not_finite, "particle", "particles", "not finite or far outside the tank") +
       part_of(met.neighbours_dropped, "neighbour", "neighbours", "left out because a list was full") +
       part_of(met.saliency_not_finite, "saliency", "saliencies", "not finite");

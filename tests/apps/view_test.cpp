@@ -8,6 +8,7 @@
 #include "libsim/gl/png.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/scene/effects.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/small_dam.hpp"
@@ -73,6 +74,12 @@ TEST_F(ViewE2e, ASoundRunTellsOfNoGuard) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_EQ(outcome.out.find("guards stepped in"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("first trouble"), std::string::npos) << outcome.out;
+}
+
+TEST(Guards, TellOfNeighboursInOnePlaceAndNotOfPairs) {
+  EXPECT_EQ(sim::in_words(sim::GuardCounts{.coincident_pairs = 2}),
+            "guards stepped in: 2 neighbours in a particle's own place (counted in each projection)");
+  EXPECT_EQ(sim::in_words(sim::GuardCounts{}), "");
 }
 
 // Two plates that together close the tank move down into the water, which can escape only through the gaps.
