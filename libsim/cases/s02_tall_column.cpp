@@ -36,8 +36,8 @@ Outcome run_s02(const Setting& setting) {
   densest.asked = 1.15;
   // The limit is 5 spacings of the start, not 2, because single drops leave the surface while the lattice
   // settles.
-  Finding rise =
-      at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
+  Finding rise = at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5,
+                         "spacings of the start");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
                         // Detects the defect of an earlier solver that had no pre-stabilisation at the
