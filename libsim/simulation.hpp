@@ -314,7 +314,7 @@ class Simulation {
   /// later read_particles. base::Error if a picture lies in GL buffers that this back end cannot read.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// ParticleSaliency::s and target by the rule of methods whose levels follow the gaze alone, in the order
-  /// of read_particles; the other fields are 0.
+  /// of read_particles; the other fields are 0. Pictures are not read.
   virtual void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// Ids in the order of read_particles.
   virtual std::vector<int> read_ids() const = 0;

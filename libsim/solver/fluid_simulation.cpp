@@ -240,7 +240,7 @@ class FluidSimulation final : public Simulation {
 
   void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) override {
     SaliencyState observer = make_observer();
-    observer.input.look(looks);
+    observer.input.look(looks, false);
     Array<float> s;
     Array<std::uint8_t> target;
     SIM_BACKEND::measure_gaze(state_, observer, s, target);

@@ -109,6 +109,16 @@ TEST_F(SharedPictureGl, TheCpuRefusesAndTakesTheHostsWay) {
   EXPECT_EQ(fluid->report().seen.way, PictureWay::None) << "a refused picture is not taken";
   std::vector<sim::ParticleSaliency> values;
   EXPECT_THROW(fluid->measure_saliency(looks(nullptr, &shared), values), base::Error);
+  std::vector<sim::ParticleSaliency> without;
+  fluid->measure_gaze_targets(looks(nullptr, &shared), values);
+  fluid->measure_gaze_targets(looks(nullptr, nullptr), without);
+  ASSERT_EQ(values.size(), without.size());
+  bool near_gaze = false;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(values[i].s, without[i].s);
+    near_gaze |= values[i].s > 0;
+  }
+  EXPECT_TRUE(near_gaze) << "gaze targets need no picture";
   sim::GBuffer seen;
   renderer->read_picture(seen);
   fluid->step_frame();
