@@ -24,8 +24,8 @@ std::span<const SolverNumber> solver_numbers() {
   static constexpr auto all = std::to_array<SolverNumber>(
       {{"iterations", "Projections a substep; 0 = the scene's", 0, SolverNumbers::most_iterations,
         &SolverNumbers::iterations},
-       {"substeps", "Substeps in every frame; 0 = as many as the fastest particle needs", 0, 64,
-        &SolverNumbers::substeps},
+       {"substeps", "Substeps in every frame; 0 = as many as the fastest particle needs", 0,
+        SolverNumbers::most_fixed_substeps, &SolverNumbers::substeps},
        {"most-substeps",
         "Most substeps in a frame, where the fastest particle decides; 32 or the scene's least when left out",
         1, 1000, &SolverNumbers::most_substeps},

@@ -32,7 +32,8 @@ namespace sim {
 /// of SIM_SOLVER_NUMBERS, and the scene's values of the others.
 struct SolverNumbers {
   static constexpr int most_iterations = 64;
-  int iterations = 0;          ///< constraint projections per substep; 0 = the scene's
+  static constexpr int most_fixed_substeps = 64;  ///< largest value of the programs' option "substeps"
+  int iterations = 0;                             ///< constraint projections per substep; 0 = the scene's
   int substeps = 0;            ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
   int most_substeps = 0;       ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
   double frame_dt_s = 0;       ///< 0 = the scene's

@@ -103,13 +103,15 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options) {
   if (options.substeps == 0 && steps <= most_computed) return static_cast<int>(steps);
   std::ostringstream problem, mend;
   problem << "needs substeps of at most " << longest.seconds << " s, that is " << steps << " a frame; ";
-  if (options.substeps > 0) {
-    problem << options.substeps << " were asked for";
-    mend << "set substeps to " << steps << " or more, or to 0 (the run then chooses)";
-  } else {
+  if (steps > most_computed) {
     problem << "the solver computes at most " << most_computed;
     mend << "lower " << traits_of(longest.of).key
          << ", raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)";
+  } else {
+    problem << options.substeps << " were asked for";
+    mend << "set substeps to ";
+    if (steps <= SolverNumbers::most_fixed_substeps) mend << steps << " or more, or to ";
+    mend << "0 (the run then chooses)";
   }
   throw base::Error(std::string("effect ") + traits_of(longest.of).word, problem.str(), mend.str());
 }

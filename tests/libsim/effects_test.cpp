@@ -183,10 +183,18 @@ TEST(Effects, TheirExplicitLimitRaisesTheSubstepsAndSaysSo) {
                         HasSubstr("set substeps to " + std::to_string(options.substeps + 1) + " or more"))));
   ++options.substeps;
   EXPECT_NO_THROW(sim::make_simulation(scene, options));
+  const double least_rate = sim::longest_step({{EffectKind::AirDrag, 1}}, d).seconds / scene.frame_dt_s;
+  scene.effects = {
+      {EffectKind::AirDrag, 99.5 * least_rate}};  // needs 100 substeps; the option has 64 at most
+  EXPECT_THAT([&] { sim::make_simulation(scene, options); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("set substeps to 0 (the run then chooses)")));
   scene.effects = {{EffectKind::AirDrag, 1e6}};
-  EXPECT_THAT([&] { sim::make_simulation(scene, options_of()); },
-              testing::ThrowsMessage<base::Error>(
-                  AllOf(HasSubstr("effect air_drag"), HasSubstr("lower rate_per_s"))));
+  for (const int fixed : {0, options.substeps}) {
+    options.substeps = fixed;
+    EXPECT_THAT([&] { sim::make_simulation(scene, options); },
+                testing::ThrowsMessage<base::Error>(AllOf(
+                    HasSubstr("effect air_drag"), HasSubstr("lower rate_per_s"), Not(HasSubstr("set ")))));
+  }
 }
 
 TEST(Effects, ViscosityAsksForNoShorterSubstepsAndAddsToTheWaters) {
