@@ -162,9 +162,11 @@ struct Grade {
   }
 };
 
-/// Number of sweeps. With levels 0 to 3 at least two are needed: limits of 1, then limits of 2, spread from a
-/// target of 0.
-constexpr int sweeps = 3;
+/// Number of sweeps after which no target changes. A target is limited to 1 only by a neighbour's target of
+/// 0, and no sweep makes a new 0, so that the first sweep sets all limits of 1. In the same way the second
+/// sweep sets all limits of 2, which come from targets of 1. Larger limits change nothing, because targets
+/// are at most 3.
+constexpr int sweeps = most_levels - 2;
 
 using GradedTargetsColumns =
     ColumnView<columns(Column::Position, Column::Level, Column::Target, Column::Neighbours),
