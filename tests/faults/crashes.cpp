@@ -44,7 +44,9 @@ Crashes::Crashes(const Command& command, const fs::path& folder)
   Problems& problems = at_first_;
   if (recorded_.how != (command.refuses ? Ended::How::Refused : Ended::How::Done))
     problems.push_back("without a fault: " + recorded_.problem);
-  if (command.refuses) problems = check_unchanged(bytes, now_);
+  if (command.refuses)
+    for (const std::string& problem : check_unchanged(bytes, now_))
+      problems.push_back("without a fault: " + problem);
   problems.resize(std::min<std::size_t>(problems.size(), 3));
   wanted_ = described(problems);
   acknowledged_ = acknowledged_before_;
