@@ -16,7 +16,8 @@ inline std::filesystem::path memory_folder() {
   return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
 }
 
-/// A new folder in `where`. The destructor makes it writable and removes it with its contents.
+/// A new folder in `where`. The destructor removes it with its contents, and makes its folders writable if it
+/// must.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
@@ -25,9 +26,15 @@ class TemporaryFolder {
     path_ = name;
   }
   ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
-    std::filesystem::remove_all(path_, ignored);
+    namespace fs = std::filesystem;
+    std::error_code problem;
+    fs::remove_all(path_, problem);
+    if (!problem) return;
+    fs::permissions(path_, fs::perms::owner_all, problem);
+    for (fs::recursive_directory_iterator at(path_, problem), end; at != end; at.increment(problem))
+      if (at->is_directory(problem) && !at->is_symlink(problem))
+        fs::permissions(at->path(), fs::perms::owner_all, problem);
+    fs::remove_all(path_, problem);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -156,6 +156,19 @@ TEST(SyncFolders, AFolderThatIsNotThereIsAnErrorThatNamesIt) {
   }
 }
 
+TEST(TemporaryFolder, IsRemovedWithReadOnlyFoldersInIt) {
+  fs::path path;
+  {
+    const test::TemporaryFolder folder;
+    path = folder.path();
+    fs::create_directories(folder / "a" / "b");
+    write_file_atomically(folder / "a" / "b" / "c", "1");
+    for (const fs::path& one : {path / "a" / "b", path / "a", path})
+      fs::permissions(one, fs::perms::owner_read | fs::perms::owner_exec);
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
 TEST(FileLock, DoesNotFollowALink) {
   const test::TemporaryFolder folder;
   fs::create_symlink("elsewhere", folder / "a.lock");
