@@ -46,11 +46,17 @@ const std::map<std::string, std::string> format_lists{{"srgb_first", "srgb8_alph
                                                       {"linear_first", "rgba16f,rgba8,srgb8_alpha8"},
                                                       {"srgb_only", "srgb8_alpha8"}};
 
+std::int64_t format_of(const std::string& name) {
+  const auto found = format_names.find(name);
+  if (found == format_names.end()) unknown(name);
+  return found->second;
+}
+
 std::vector<std::int64_t> read_formats(const std::string& text) {
   const auto list = format_lists.find(text);
   std::vector<std::int64_t> out;
   for (const std::string& name : split(list == format_lists.end() ? text : list->second, ','))
-    out.push_back(format_names.at(name));
+    out.push_back(format_of(name));
   return out;
 }
 
@@ -123,7 +129,7 @@ const std::map<std::string, std::function<void(Profile&, Text)>> keys{
     {"rates", [](Profile& p, Text value) { p.rates = read_numbers<float>(value); }},
     {"rate", [](Profile& p, Text value) { p.rate = std::stof(value); }},
     {"formats", [](Profile& p, Text value) { p.formats = read_formats(value); }},
-    {"broken", [](Profile& p, Text value) { p.broken_format = format_names.at(value); }},
+    {"broken", [](Profile& p, Text value) { p.broken_format = format_of(value); }},
     {"fov", [](Profile& p, Text value) { p.fov = read_numbers<double>(value); }},
     {"dump", [](Profile& p, Text value) { p.dumps = read_numbers<long>(value); }},
     {"at", [](Profile& p, Text value) { p.script = read_script(value); }},

@@ -47,8 +47,7 @@ struct Profile {
   bool hash = false;         ///< the frame log has hashes of the images
 };
 
-/// Reads VIP_XR_PROFILE. std::invalid_argument for an unknown key or value, std::out_of_range for an unknown
-/// format.
+/// Reads VIP_XR_PROFILE. std::invalid_argument for an unknown key, value or format.
 Profile read_profile();
 
 }  // namespace simulated
