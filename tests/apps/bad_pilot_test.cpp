@@ -62,7 +62,7 @@ std::vector<Bad> bad_pilots() {
   };
 }
 
-TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
+TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndOnlyTheJsonIsWritten) {
   for (const Bad& bad : bad_pilots()) {
     SCOPED_TRACE(bad.kind);
     const TemporaryFolder folder;
