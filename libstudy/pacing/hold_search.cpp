@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace study {
 
@@ -35,13 +36,12 @@ class Holds {
     const long double n = static_cast<long double>(n_);
     return static_cast<double>(std::sqrt(std::max(0.0L, squares_ / n - (sum_ / n) * (sum_ / n))));
   }
-  double excess() const {
-    return mean_weight_ * std::max(0.0, std::abs(mean() - target_.mean) - target_.mean_tolerance) +
+  /// Errors of the mean and of the standard deviation beyond their tolerances; `mean_weight` multiplies the
+  /// error of the mean.
+  double excess(double mean_weight) const {
+    return mean_weight * std::max(0.0, std::abs(mean() - target_.mean) - target_.mean_tolerance) +
            std::max(0.0, std::abs(sd() - target_.sd) - target_.sd_tolerance);
   }
-
-  /// Sets the weight of the mean's error in excess(), relative to the error of the standard deviation.
-  void weigh_mean(double weight) { mean_weight_ = weight; }
 
   void set(int edge, std::int64_t count) { counts_[static_cast<std::size_t>(edge)] = count; }
 
@@ -100,7 +100,6 @@ class Holds {
   const HoldTarget& target_;
   std::int64_t n_;
   std::vector<std::int64_t> counts_;
-  double mean_weight_ = 1;
   std::int64_t total_ = 0;
   long double sum_ = 0, squares_ = 0, distance2_ = 0;
 };
@@ -178,10 +177,12 @@ void fix_total(Holds& holds, std::int64_t total) {
   }
 }
 
-/// Quality of a list: first the excess of its moments over their tolerances, then the objective.
+/// Quality of a list: first the excess of its moments over their tolerances, with a weight for the mean's
+/// error, then the objective.
 struct Score {
-  double excess, distance2;
-  explicit Score(const Holds& holds) : excess(holds.excess()), distance2(holds.distance2()) {}
+  double mean_weight, excess, distance2;
+  Score(const Holds& holds, double weight)
+      : mean_weight(weight), excess(holds.excess(weight)), distance2(holds.distance2()) {}
   bool better_than(const Score& other) const {
     if (std::abs(excess - other.excess) > 1e-12) return excess < other.excess;
     return distance2 < other.distance2 - 1e-9;
@@ -198,7 +199,7 @@ bool exchange(Holds& holds, Score& score) {
       holds.move(up, 1);
       if (holds.can_move(down, -1)) {
         holds.move(down, -1);
-        const Score tried(holds);
+        const Score tried(holds, score.mean_weight);
         if (tried.better_than(score)) {
           score = tried;
           moved = true;
@@ -220,7 +221,7 @@ bool adjust(Holds& holds, Score& score) {
     for (const int by : {-1, 1}) {
       if (!holds.can_move(edge, by)) continue;
       holds.move(edge, by);
-      const Score tried(holds);
+      const Score tried(holds, score.mean_weight);
       if (tried.better_than(score)) {
         score = tried;
         moved = true;
@@ -232,9 +233,10 @@ bool adjust(Holds& holds, Score& score) {
   return moved;
 }
 
-void descend(Holds& holds, std::int64_t total) {
+/// Changes the holds by single periods as long as this improves their score. `mean_weight`: see Score.
+void descend(Holds& holds, std::int64_t total, double mean_weight = 1) {
   if (total > 0) fix_total(holds, total);
-  Score score(holds);
+  Score score(holds, mean_weight);
   for (int sweep = 0; sweep < 5000; ++sweep) {
     const bool exchanged = exchange(holds, score);
     const bool adjusted = total == 0 && adjust(holds, score);
@@ -245,7 +247,7 @@ void descend(Holds& holds, std::int64_t total) {
 HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total) {
   const double n = static_cast<double>(target.rates.size());
   return {holds.list(), holds.mean(), holds.sd(), std::sqrt(std::max(0.0, holds.distance2()) / n),
-          total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
+          total > 0 && holds.total() != total ? HUGE_VAL : holds.excess(1)};
 }
 
 /// Calls descend() on every list of two different holds, one at most and one at least as long as the mean
@@ -283,12 +285,15 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
   if (best.excess == 0) return best;
   if (total > 0) return from_pairs(target, total, std::move(best));
   // If the total is free, the search may stop at a list where every change improves one moment and worsens
-  // the other. So the search is repeated with a weight of 1000 for the error of the mean.
+  // the other. So the search is repeated with a weight of 1000 for the error of the mean. Of the lists found,
+  // the one with the least error of the mean is returned; of several such lists, that with the least excess.
+  const auto mean_miss = [&](const HoldList& list) {
+    return std::max(0.0, std::abs(list.mean - target.mean) - target.mean_tolerance);
+  };
   for (Holds* start : {&holds, &strict}) {
-    start->weigh_mean(1000);
-    descend(*start, total);
+    descend(*start, total, 1000);
     auto found = result(*start, target, total);
-    if (found.excess < best.excess || std::abs(best.mean - target.mean) > target.mean_tolerance)
+    if (std::pair(mean_miss(found), found.excess) < std::pair(mean_miss(best), best.excess))
       best = std::move(found);
   }
   return best;

@@ -34,8 +34,7 @@ struct HoldList {
   std::vector<int> holds;
   double mean = 0, sd = 0;  ///< of the rates, frames/s; mean of the target's mean_kind
   double distance = 0;      ///< root of the objective, frames/s
-  /// Sum of the errors of mean and sd beyond their tolerances; the error of the mean may count 1000-fold. 0:
-  /// mean and sd are within their tolerances.
+  /// Sum of the errors of mean and sd beyond their tolerances, frames/s. 0: both are within their tolerances.
   double excess = 0;
 };
 

@@ -251,6 +251,24 @@ TEST(Quantise, ArithmeticMeanIsMetWhereItIsCalledExact) {
   EXPECT_GE(exact, 19);
 }
 
+// The search finds lists of eight holds with the means 49.5 and 50.5, which miss 50 frames/s equally.
+TEST(HoldSearch, OfListsThatMissTheMeanEquallyTheOneWithTheBetterSdIsReturned) {
+  study::HoldTarget target;
+  target.rates.assign(8, 50);
+  target.refresh_hz = 72;
+  target.longest = 18;
+  target.mean_kind = study::FpsMean::Arithmetic;
+  target.mean = 50;
+  target.mean_tolerance = 0.25;
+  target.sd = 5;
+  target.sd_tolerance = 0.25;
+  const auto found = study::search_holds(target, 0);
+  EXPECT_LE(std::abs(found.mean - 50), 0.5 + 1e-9);
+  EXPECT_LT(found.sd, 18) << "a list with frames of 18 periods has 29";
+  const double mean_miss = std::max(0.0, std::abs(found.mean - 50) - 0.25);
+  EXPECT_NEAR(found.excess, mean_miss + found.sd - 5 - 0.25, 1e-9) << "without a weight";
+}
+
 TEST(ScheduleOfHolds, KeepsDeadlinesOnTheRefresh) {
   const auto schedule = study::schedule_of_holds({1, 2, 3}, 90);
   EXPECT_DOUBLE_EQ(schedule.intervals_s[1], 2.0 / 90);
