@@ -67,6 +67,18 @@ TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
   EXPECT_EQ(study::PageType({}).undrawn(U"☃a"), U"☃");
 }
 
+TEST(PageFonts, AChosenFontThatIsNotThereIsAnError) {
+  ::unsetenv("VIP_FONT");
+  const std::string usual = study::find_font();
+  ::setenv("VIP_FONT", "", 1);
+  EXPECT_EQ(study::find_font(), usual);
+  ::setenv("VIP_FONT", "/no/such/font.ttf", 1);
+  EXPECT_THAT([] { study::find_font(); },
+              ThrowsMessage<base::Error>(
+                  AllOf(HasSubstr("VIP_FONT = /no/such/font.ttf"), HasSubstr("is not a file"))));
+  ::unsetenv("VIP_FONT");
+}
+
 // Chinese has no spaces: lines break between characters, and no punctuation mark starts a line.
 TEST(PageFontsGl, WordsWithoutSpacesAreWrapped) {
   const sim::GlContext gl = sim::GlContext::make_headless();

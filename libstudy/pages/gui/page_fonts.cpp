@@ -120,15 +120,19 @@ PageCharacters page_characters(const Protocol& protocol) {
 }
 
 std::string find_font() {
-  std::string found;
-  if (const char* wished = std::getenv("VIP_FONT")) found = wished;
+  if (const char* chosen = std::getenv("VIP_FONT"); chosen && *chosen) {
+    std::error_code ignored;
+    if (fs::is_regular_file(chosen, ignored)) return chosen;
+    throw base::Error(std::string("environment variable VIP_FONT = ") + chosen, "is not a file",
+                      "name a font's file, or unset VIP_FONT for a font of the system");
+  }
   for (const char* name :
        {"dejavu/DejaVuSans.ttf", "liberation/LiberationSans-Regular.ttf",
         "liberation2/LiberationSans-Regular.ttf", "noto/NotoSans-Regular.ttf", "freefont/FreeSans.ttf"}) {
     const std::string path = std::string(folder) + "truetype/" + name;
-    if (found.empty() && fs::exists(path)) found = path;
+    if (fs::exists(path)) return path;
   }
-  return fs::exists(found) ? found : std::string();
+  return {};
 }
 
 std::vector<FontFile> find_fonts(const PageCharacters& needed) {

@@ -19,8 +19,8 @@ struct PageCharacters {
 };
 PageCharacters page_characters(const Protocol& protocol);
 
-/// The file of $VIP_FONT if it is set, else the first system font of a fixed list. "" if there is no such
-/// file: Dear ImGui's default font is then used.
+/// The file of $VIP_FONT if it is set and not empty, else the first system font of a fixed list. "" if none
+/// of the list exists: Dear ImGui's default font is then used. base::Error if $VIP_FONT is not a file.
 std::string find_font();
 
 /// A font's file, and the font's index in a file with several fonts.
