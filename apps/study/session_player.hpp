@@ -74,7 +74,7 @@ extern const char* const exit_status_help;
 
 /// Prints the timing certificate of a run: a heading; for each cell whose showings were answered, a line with
 /// nominal and realised mean and standard deviation of the frame rate, late frames, verdicts and grades; the
-/// number of trials that pass.
+/// number of trials that pass. Prints nothing if no showing was answered.
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol);
 

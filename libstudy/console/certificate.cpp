@@ -72,7 +72,6 @@ struct Shown {
 Shown shown_in(const Rows& rows) {
   Shown out;
   out.lines.resize(rows.size());
-  if (rows.empty()) return out;
   for (const NameColumn& column : columns_of(rows)) {
     if (rows.front().levels.empty() && !column.differs()) {
       if (!column.names[0].empty()) out.shared += (out.shared.empty() ? "" : ", ") + column.names[0];
@@ -114,8 +113,9 @@ std::string marked(const std::string& line, const char* word, const char* colour
 }  // namespace
 
 std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
+  if (rows.empty()) return "";
   const Shown shown = shown_in(rows);
-  const bool profiles = !rows.empty() && !rows.front().levels.empty();
+  const bool profiles = !rows.front().levels.empty();
   std::string text = "Timing certificate" + (shown.shared.empty() ? "" : " of " + shown.shared) + " (" +
                      (mean == FpsMean::Harmonic ? "harmonic" : "arithmetic") +
                      " mean, frames/s; worst = largest distance of one trial)\n" +

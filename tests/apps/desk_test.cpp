@@ -66,6 +66,10 @@ TEST(Certificate, MarksCellsThatFailedByAWord) {
   EXPECT_THAT(text, Not(HasSubstr("\033"))) << "colour where there is no terminal";
 }
 
+TEST(Certificate, OfNoTrialIsEmpty) {
+  EXPECT_EQ(study::format_certificate({}, study::FpsMean::Harmonic, false), "");
+}
+
 TEST(Certificate, NamesWhatDistinguishesItsRowsAndWhatTheyShare) {
   std::vector<study::CertificateRow> rows;
   for (const char* scene : {"data/scenes/single_dam.toml", "data/scenes/faucet.toml"}) {
