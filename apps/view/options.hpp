@@ -57,7 +57,8 @@ struct PreparedFluid {
 /// The scene for the renderer: without the effects that cannot act in the method's water.
 sim::Scene drawn(const PreparedFluid& prepared);
 /// Sets method, n_star, levels, alpha, iterations and tau from a setting file. The other numbers of the file
-/// apply as long as method, n_star, levels and preset are unchanged.
+/// apply as long as method, n_star, levels and preset are unchanged, also after a change of alpha or
+/// iterations.
 void take_setting(ViewOptions& options, const std::string& path);
 
 /// Lines with the cost and the errors that the sweep measured for a setting in this scene; no lines without a

@@ -26,8 +26,6 @@ sim::SimulationOptions chosen(const ViewOptions& options) {
   out.backend = sim::choose_backend(options.backend);
   out.readings = sim::readings_of(sim::parse_preset(options.preset));
   out.levels = options.levels;
-  if (options.alpha) out.readings.alpha = *options.alpha;
-  out.iterations = options.iterations.value_or(0);
   out.temporal.fixed_tau = sim::parse_tau(options.tau);
   return out;
 }
@@ -39,6 +37,13 @@ bool as_set(const ViewOptions& options) {
   return sim::parse_method(options.method) == of.method && options.preset == "tuned" &&
          sim::parse_n_star(options.n_star) == std::llround(of[sim::SolverKnob::Size]) &&
          options.levels == static_cast<int>(of[sim::SolverKnob::Levels]);
+}
+
+/// True if alpha and iterations, which the panel changes in a running fluid, are those of the setting file.
+bool numbers_as_set(const ViewOptions& options) {
+  const sim::SolverSetting& of = options.setting->setting;
+  return (!options.alpha || *options.alpha == of[sim::SolverKnob::Alpha]) &&
+         options.iterations == static_cast<int>(of[sim::SolverKnob::Iterations]);
 }
 
 }  // namespace
@@ -77,6 +82,8 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   sim::SimulationOptions choice =
       as_set(options) ? sim::to_options(options.setting->setting, sim::choose_backend(options.backend), 1)
                       : chosen(options);
+  if (options.alpha) choice.readings.alpha = *options.alpha;
+  if (options.iterations) choice.iterations = *options.iterations;
   choice.cache = sim::default_cache_folder();
   // In a window the user may choose an overlay of saliency later.
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
@@ -99,7 +106,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
               static_cast<long long>(prepared.fluid->particle_count()),
               sim::backend_name(choice.backend).c_str());
   if (!options.effects_off.empty()) std::printf("with %s\n", in_words(prepared.scene.effects).c_str());
-  if (as_set(options)) {
+  if (as_set(options) && numbers_as_set(options)) {
     std::printf("%s\n", sim::describe(*options.setting).c_str());
     const auto note = sim::other_scene(*options.setting, prepared.scene.sha256);
     if (!note.empty()) std::printf("%s\n", note.c_str());

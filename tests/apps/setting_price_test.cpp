@@ -180,7 +180,11 @@ TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   options.display = "headless";
   take_setting(options, folder / "best.toml");
   EXPECT_EQ(without_scene(prepare_fluid(options).setting), without_scene(file.setting));
-  options.method = "HiRes";  // like a choice in the panel
+  options.iterations = 7;  // like a choice in the panel
+  const auto turned = prepare_fluid(options);
+  EXPECT_EQ(turned.setting[sim::SolverKnob::Iterations], 7) << "a restart keeps it";
+  EXPECT_EQ(turned.setting[sim::SolverKnob::Substeps], 3) << "beside the file's other numbers";
+  options.method = "HiRes";
   const auto hires = prepare_fluid(options);
   EXPECT_EQ(hires.setting.method, sim::MethodKind::HiRes);
   EXPECT_EQ(hires.setting[sim::SolverKnob::Substeps], 0) << "the file's numbers hold no more";
