@@ -51,9 +51,11 @@ GLFWmonitor* find_monitor(int index, const std::string& mend) {
   int count = 0;
   GLFWmonitor** all = glfwGetMonitors(&count);
   if (index < 0 || index >= count) {
+    // vip-study resume opens the window on the recorded monitor and has no option for it.
+    const std::string others = count > 1 ? " to " + std::to_string(count - 1) : "";
     fail("there is no monitor " + std::to_string(index) + "; the machine has " + std::to_string(count) +
              " of them",
-         count > 0 ? "choose a monitor from 0 to " + std::to_string(count - 1) : mend);
+         count > 0 ? "connect it, or begin a run with --monitor 0" + others : mend);
   }
   return all[index];
 }

@@ -1,4 +1,4 @@
-/// The experimenter's mirror window of a headset, on a virtual screen.
+/// The experimenter's mirror window of a headset, and windows in general, on a virtual screen.
 #include "libstudy/window/headset_mirror.hpp"
 
 #include <array>
@@ -10,6 +10,7 @@
 #include "libstudy/headset/mirror_picture.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/store/file/sqlite.hpp"
+#include "libstudy/window/glfw_window.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/headset_runs.hpp"
 #include "tests/apps/study_test_support.hpp"
@@ -232,6 +233,18 @@ TEST_F(HeadsetMirrorGl, WithoutAScreenThereIsOneClearError) {
   }
   for (int i = 0; i < 5; ++i) display_->turn();
   close();
+}
+
+TEST(GlfwWindowGl, AMonitorThatIsNotThereIsAnErrorThatNamesTheOption) {
+  const simulated::XScreen screen;
+  ::setenv("DISPLAY", screen.name().c_str(), 1);
+  study::WindowChoice choice;
+  choice.monitor = 9;
+  EXPECT_THAT(
+      [&] { study::GlfwWindow window(choice); },
+      ::testing::ThrowsMessage<base::Error>(::testing::AllOf(
+          HasSubstr("there is no monitor 9"), HasSubstr("connect it, or begin a run with --monitor 0"))));
+  ::unsetenv("DISPLAY");
 }
 
 /// Runs vip-study run itself, answered by the scripted ray.
