@@ -11,7 +11,7 @@ namespace study {
 
 /// A stored picture of the water. It is compared with the reference's picture when a table is made.
 struct KeptPicture {
-  double time_s = 0;  ///< time since the gate opened
+  double time_s = 0;  ///< time since frame 0
   std::string png;
   /// Masks of the fovea and of the most salient part, packed by to_bits(). Only runs of the reference setting
   /// store masks, with the first picture of each pair.
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> from_bits(const std::string& bits, std::size_t pixels)
 
 /// The water at one instant. Energies are per kilogram, J/kg.
 struct WaterSample {
-  double time_s = 0;     ///< time since the gate opened
+  double time_s = 0;     ///< time since frame 0
   double front_m = 0;    ///< position of the water's front: the smallest x up to which 99 % of the mass lies
   double centre_m[3]{};  ///< centre of mass: x, y, z
   double kinetic_j_kg = 0;
@@ -40,7 +40,7 @@ struct FrameCost {
 };
 
 struct CellRun {
-  /// State of the water every 1/30 s. The first sample is taken 1/30 s after the gate opens.
+  /// State of the water every 1/30 s. The first sample is taken 1/30 s after frame 0.
   std::vector<WaterSample> samples;
   std::vector<FrameCost> frames;  ///< all frames except the first five, in which buffers grow
   /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if SweepCell::kept

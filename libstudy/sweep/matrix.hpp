@@ -13,7 +13,7 @@ struct SweepCell {
   /// Start of the run. 1: the settled state. 2, 3, ...: the settled state, perturbed by one unit in the last
   /// place.
   int seed = 1;
-  double seconds = 2;  ///< simulated time from the opening of the gate
+  double seconds = 2;  ///< simulated time from frame 0
   /// Size of the pictures whose drawing is timed; a method that depends on the picture receives them. Empty:
   /// none.
   std::string size = {};

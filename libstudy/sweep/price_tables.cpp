@@ -145,7 +145,7 @@ std::string in_words(const ObservedOrder& order) {
 std::string parting_in_words(const PriceList& list) {
   if (std::isinf(list.parting_s))
     return "The reference's pictures and its second seed's do not diverge within the run.";
-  return fmt::format("The reference's pictures and its second seed's diverge {:.2f} s after the gate opened.",
+  return fmt::format("The reference's pictures and its second seed's diverge {:.2f} s after frame 0.",
                      list.parting_s);
 }
 

@@ -192,6 +192,10 @@ TEST(SweepPictures, StandInTablesPageAndBudget) {
   EXPECT_TRUE(list.pictures());
   EXPECT_THAT(study::to_markdown(list), HasSubstr("| FLIP % |"));
   EXPECT_THAT(study::to_markdown(list), HasSubstr("pictures and its second seed's do not diverge"));
+  auto parting = list;
+  parting.parting_s = 0.4;
+  EXPECT_THAT(study::to_markdown(parting), HasSubstr("diverge 0.40 s after frame 0."))
+      << "not all have a gate";
   EXPECT_THAT(figures::to_csv(study::setting_table(list)), HasSubstr("picture_pct,picture_pct_low"));
   const auto page = study::accuracy_page(list, plan);
   for (const char* words : {"Error of flicker", "Error of what is seen (FLIP)", "Compared pictures: 32x32 px",

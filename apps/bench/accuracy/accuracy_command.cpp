@@ -249,8 +249,7 @@ void add_accuracy_command(CLI::App& app) {
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();
   add_n_star(*command, options->n_star);
   add_backend(*command, options->backend);
-  command
-      ->add_option("--seconds", options->seconds, "Of content, from the opening of the gate, in whole 1/30 s")
+  command->add_option("--seconds", options->seconds, "Of content, from frame 0, in whole 1/30 s")
       ->check(number_in(0.1, 60))
       ->capture_default_str();
   add_count(*command, "--seeds", options->seeds, 1, 100, "Runs of each setting, from starts an ulp apart");
