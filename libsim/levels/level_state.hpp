@@ -27,6 +27,7 @@ struct LevelRules {
         merge_overlap(static_cast<float>(readings.merge_overlap)),
         merge_keeps_steps(readings.merge_keeps_steps),
         dead_band(static_cast<float>(readings.merge_dead_band)),
+        calm_dead_band(static_cast<float>(readings.calm_dead_band)),
         kick_filter(static_cast<float>(readings.kick_filter)),
         calm_viscosity(static_cast<float>(readings.calm_viscosity)) {}
 
@@ -41,6 +42,7 @@ struct LevelRules {
   /// A particle of level l may become coarser only if N (1 - s) of ViP-Fluid Eq. 9 is at least l + 1 plus
   /// this number; s is the particle's saliency.
   float dead_band;
+  float calm_dead_band;
   float kick_filter;
   float calm_viscosity;
 

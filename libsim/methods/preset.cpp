@@ -39,6 +39,7 @@ Readings readings_of(Preset preset) {
   out.merge_overlap = 1;
   out.merge_keeps_steps = false;
   out.merge_dead_band = 0;
+  out.calm_dead_band = 0;
   out.dimensionless_levels = false;
   out.inherit_change = false;
   out.inactive_pressed = false;

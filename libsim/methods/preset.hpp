@@ -60,8 +60,8 @@ struct Readings {
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
   /// Limit speed of water at rest, as a share of sqrt(g d_*); 0 = no water counts as at rest. kick_filter and
-  /// calm_viscosity weaken as the speed rises to this limit. calm_floor applies in full up to about this
-  /// speed and falls to 0 at 1.5 times it.
+  /// calm_viscosity weaken as the speed rises to this limit. calm_floor and calm_dead_band apply in full up to
+  /// about this speed and fall to 0 at 1.5 times it.
   double calm_speed = 0.65;
   /// Eq. 6: in water at rest this value is subtracted from the temporal feature, down to 0 at least, before
   /// gamma_t divides the feature. Otherwise the motion that splits and merges cause would trigger further
@@ -105,6 +105,10 @@ struct Readings {
   /// number. So a particle whose s varies about the border of two levels does not alternately split and
   /// merge. [0, 1)
   double merge_dead_band = 0.7;
+  /// Added to merge_dead_band for particles at rest; fades out with speed as calm_floor does. Each merge stirs
+  /// still water a little, and stirred water splits and merges again (docs/decisions.md, "Still water with
+  /// levels"). >= 0
+  double calm_dead_band = 0.7;
   /// Strength of a filter of velocity changes near particles that just split or merged. In a substep the
   /// filter removes up to this share of the differences between neighbours' velocity changes, and most in
   /// water at rest. Otherwise the overlap of the new particles would become kinetic energy. [0, 1]; 0 = no

@@ -114,14 +114,13 @@ struct FollowUnrest {
   float* unrest;
   const Vec4* velocity;
   SwirlSeen swirl;
-  Calm fading;  ///< degree of rest; the floor applies in full from 0.5 on
+  LevelRest rest;
   float share, floor;
   SIM_FN void operator()(int i) const {
     const float before = unrest[i];
-    const Vec4 v = velocity[i];
-    const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
-    // A NaN is not < rest and passes, so that it is detected.
-    float wish = now[i] < rest ? 0 : now[i] - rest;
+    const float lowered = floor * rest(velocity[i]);
+    // A NaN is not < lowered and passes, so that it is detected.
+    float wish = now[i] < lowered ? 0 : now[i] - lowered;
     if (swirl.rate) wish += swirl.adds(i);
     unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
   }
@@ -144,8 +143,8 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
                           .unrest = fluid.unrest,
                           .velocity = fluid.velocity,
                           .swirl = fluid.swirl,
-                          .fading = calm_below(1.5 * p.calm_speed, static_cast<double>(fluid.gravity),
-                                               static_cast<double>(fluid.finest_support) / 2),
+                          .rest = level_rest(p.calm_speed, static_cast<double>(fluid.gravity),
+                                             static_cast<double>(fluid.finest_support) / 2),
                           .share = in_one_step(p.temporal_follow, state.frames_since),
                           .floor = static_cast<float>(p.calm_floor)});
   }

@@ -34,7 +34,7 @@ void add(std::ostream& text, const Readings& r) {
        << ' ' << r.merge_dead_band << ' ' << r.kick_filter << ' ' << r.longest_rest_frames << ' '
        << r.least_work_frames << ' ' << r.inherit_cell_spacings << ' ' << r.inactive_damping << ' '
        << r.levels_period_frames << ' ' << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed
-       << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
+       << ' ' << r.calm_floor << ' ' << r.calm_dead_band << ' ' << r.calm_viscosity << '\n';
 }
 
 /// Adds the scene's hash. A scene that was not read from a file has no hash, so this adds also the scene's

@@ -118,15 +118,18 @@ Stage opening_targets_stage() {
 namespace {
 
 /// Hysteresis: a particle of level l with a coarser target keeps l as target, unless N (1 - s) is at least
-/// l + 1 + dead_band, with s the saliency and N the number of levels.
+/// l + 1 + dead_band, with s the saliency and N the number of levels. For a particle at rest calm_dead_band
+/// is added to the dead band.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;
   std::uint8_t* target;
-  float levels, dead_band;
+  const Vec4* velocity;
+  LevelRest rest;
+  float levels, dead_band, calm_dead_band;
   SIM_FN void operator()(int i) const {
     if (target[i] <= level[i]) return;
-    const float border = static_cast<float>(level[i] + 1) + dead_band;
+    const float border = static_cast<float>(level[i] + 1) + dead_band + calm_dead_band * rest(velocity[i]);
     if (levels * (1 - saliency[i]) < border) target[i] = level[i];
   }
 };
@@ -169,7 +172,7 @@ struct Grade {
 constexpr int sweeps = most_levels - 2;
 
 using GradedTargetsColumns =
-    ColumnView<columns(Column::Position, Column::Level, Column::Target, Column::Neighbours),
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Target, Column::Neighbours),
                columns(Column::Target), columns(Column::Saliency)>;
 
 void run_graded_targets(FluidState& state, GradedTargetsColumns p) {
@@ -181,8 +184,11 @@ void run_graded_targets(FluidState& state, GradedTargetsColumns p) {
              Hold{.level = p.level(),
                   .saliency = p.saliency(),
                   .target = p.target(),
+                  .velocity = p.velocity(),
+                  .rest = state.level_rest(),
                   .levels = static_cast<float>(rules.coarsest + 1),
-                  .dead_band = rules.dead_band});
+                  .dead_band = rules.dead_band,
+                  .calm_dead_band = rules.calm_dead_band});
   }
   if (!rules.graded) return;
   graded.reserve(static_cast<std::size_t>(p.capacity()));

@@ -26,11 +26,14 @@ struct Follow {
 };
 
 /// Lists the particles that split or merged in this frame, and the particles within their support: all of
-/// these have the smallest share of the constraint. With `widely`, also lists their neighbours.
+/// these have the smallest share of the constraint. Also lists those of their neighbours that are at rest;
+/// with `widely`, all of their neighbours.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
   const float* ease;
+  const Vec4* velocity;
+  LevelRest rest;
   float least;
   bool widely;
   Neighbours neighbours;
@@ -41,7 +44,7 @@ struct ListBesideFresh {
     const int i = select(slot);
     if (i < 0) return;
     int beside = ease[i] <= least ? 1 : 0;
-    const int size = widely && !beside ? neighbours.size(slot) : 0;
+    const int size = !beside && (widely || rest(velocity[i]) > 0) ? neighbours.size(slot) : 0;
     const NeighbourRun run = neighbours.run(slot);
     for (int k = team.rank(); k < size && !beside; k += Team::size)
       if (ease[run[k]] <= least) beside = 1;
@@ -80,14 +83,15 @@ void go_on(FluidState& state, Places p) {
   clamp_and_listen(state, p, p.velocity_next(), 1, true);
 }
 
-using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neighbours, Column::Id),
-                                  columns(Column::Predicted, Column::PredictedNext, Column::Position,
-                                          Column::VelocityNext, Column::Lambda, Column::Density)>;
+using PartingColumns =
+    ColumnView<columns(Column::Predicted, Column::Velocity, Column::Ease, Column::Neighbours, Column::Id),
+               columns(Column::Predicted, Column::PredictedNext, Column::Position, Column::VelocityNext,
+                       Column::Lambda, Column::Density)>;
 
 /// Separates particles that split or merged in this frame, and those near them. An overlap of length l that
 /// remains becomes a speed of about l / dt in one substep. This speed is large compared with that of the
-/// water if gravity moves a particle by only a small share of its support in a substep. In that case more
-/// particles are moved, with more projections.
+/// water if the water is at rest, or if gravity moves a particle by only a small share of its support in a
+/// substep. In both cases more particles are moved, in the latter with more projections.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -99,6 +103,8 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
   for_each_team("list beside fresh", p.size(),
                 ListBesideFresh<Selection>{.select = select,
                                            .ease = p.ease(),
+                                           .velocity = p.velocity(),
+                                           .rest = state.level_rest(),
                                            .least = levels.rules.ease[0],
                                            .widely = widely,
                                            .neighbours = state.neighbours.view(),
