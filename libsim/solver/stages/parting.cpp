@@ -26,14 +26,14 @@ struct Follow {
 };
 
 /// Lists the particles that split or merged in this frame, and the particles within their support: all of
-/// these have the smallest share of the constraint. Also lists those of their neighbours that are at rest;
+/// these have the smallest share of the constraint. Also lists those of their neighbours that are slow, or,
 /// with `widely`, all of their neighbours.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
   const float* ease;
   const Vec4* velocity;
-  LevelRest rest;
+  Calm slow;  ///< positive for particles that are slow
   float least;
   bool widely;
   Neighbours neighbours;
@@ -44,7 +44,9 @@ struct ListBesideFresh {
     const int i = select(slot);
     if (i < 0) return;
     int beside = ease[i] <= least ? 1 : 0;
-    const int size = !beside && (widely || rest(velocity[i]) > 0) ? neighbours.size(slot) : 0;
+    const Vec4 v = velocity[i];
+    const bool with_neighbours = widely || slow(v.x, v.y, v.z) > 0;
+    const int size = with_neighbours && !beside ? neighbours.size(slot) : 0;
     const NeighbourRun run = neighbours.run(slot);
     for (int k = team.rank(); k < size && !beside; k += Team::size)
       if (ease[run[k]] <= least) beside = 1;
@@ -90,8 +92,10 @@ using PartingColumns =
 
 /// Separates particles that split or merged in this frame, and those near them. An overlap of length l that
 /// remains becomes a speed of about l / dt in one substep. This speed is large compared with that of the
-/// water if the water is at rest, or if gravity moves a particle by only a small share of its support in a
-/// substep. In both cases more particles are moved, in the latter with more projections.
+/// water if the water is slow, or if gravity moves a particle by only a small share of its support in a
+/// substep. In both cases more particles are moved, in the latter with more projections. Slow water is below
+/// half of calm_speed: at the whole of it, waves would lose more of their amplitude (docs/decisions.md,
+/// "Still water with levels").
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -104,7 +108,9 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
                 ListBesideFresh<Selection>{.select = select,
                                            .ease = p.ease(),
                                            .velocity = p.velocity(),
-                                           .rest = state.level_rest(),
+                                           .slow = calm_below(state.saliency.readings.calm_speed / 2,
+                                                              static_cast<double>(k.gravity.strength),
+                                                              static_cast<double>(state.finest_support) / 2),
                                            .least = levels.rules.ease[0],
                                            .widely = widely,
                                            .neighbours = state.neighbours.view(),
