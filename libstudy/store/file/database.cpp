@@ -145,7 +145,7 @@ bool has_bytes(const fs::path& path) {
 }
 
 /// holds_nothing() for a file that begins with `head`, at most header_bytes bytes.
-bool holds_nothing(const fs::path& path, const std::string& head) {
+bool empty_or_emptied(const fs::path& path, const std::string& head) {
   if (!has_bytes(path)) return true;
   if (!was_empty_before(path.string() + "-journal")) return false;
   // The journal records an empty file. If the file is a vip-study database of a schema above 1, it had
@@ -162,7 +162,7 @@ void recognise(const fs::path& path, const std::string& head, const Identity& fo
                std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
   if (blank && how == Open::Create) return;
-  if (holds_nothing(path, head)) {
+  if (empty_or_emptied(path, head)) {
     throw base::Error(path.string(),
                       "holds nothing: it is empty, or the command that was making it was cut off",
                       "run that command (vip-study run or merge) again: it creates the file");
@@ -310,7 +310,7 @@ bool holds_nothing(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), salvaging::header_bytes);
   head.resize(static_cast<std::size_t>(file.gcount()));
-  return holds_nothing(path, head);
+  return empty_or_emptied(path, head);
 }
 
 SchemaSteps read_schema_steps() {
