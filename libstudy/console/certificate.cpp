@@ -62,8 +62,9 @@ std::vector<NameColumn> columns_of(const Rows& rows) {
   return out;
 }
 
-/// Names of the stimuli. A name in which the rows differ becomes a table column; a name that all rows share
-/// becomes a part of the heading. For a protocol with factors, all names are table columns.
+/// The text that names each row's stimulus: scene, n_*, method and effects. Names in which the rows differ
+/// are table columns, with their titles in `head`; names that all rows share are in `shared`, for the heading
+/// above the table. For a protocol with factors, all names are table columns.
 struct Shown {
   std::string head, shared;
   std::vector<std::string> lines;  ///< text of the columns, one string per row

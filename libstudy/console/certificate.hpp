@@ -17,8 +17,9 @@ namespace study {
 /// row yellow. `mean`: the kind of mean in the rows. Empty without rows.
 ///
 /// Rows of a protocol with factors have other columns: their levels and the requested timing profile instead
-/// of scene, n_*, method and effects; then the realised 99th percentile, longest interval, hitches and
-/// animation error.
+/// of scene, n_*, method and effects. At the end come the realised 99th percentile of the frame intervals,
+/// longest interval, hitches (intervals longer than 1.5 times the median) and animation error (mean absolute
+/// difference between a frame's step of simulated time and its interval).
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
 }  // namespace study

@@ -57,7 +57,7 @@ void Console::begin(const OpenSession& session) {
   verdicts_.clear();
   say(fmt::format("{}: {} steps of {} left, {}; disk {:.1f} GB free", session.plan.participant,
                   session.units.size(), session.planned, left(), 1e-3 * free_mb(database_)));
-  // Names no hypothesis: vip-stats reads the plan that lists them, and a session does not know it.
+  // Does not say which hypotheses: a plan file lists them, which vip-stats reads and a session does not.
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
            ? "; hypotheses that need tracked gaze are not testable"
@@ -119,7 +119,8 @@ void Console::done(const UnitDone& unit) {
     verdicts_ = unit.verdicts;
   }
   for (const TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
-  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // request() can no longer cut the trial
+  // If repeat_ is still set, the trial ended before request() could cut it for the repeat.
+  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);
 }
 
 Request Console::request() {
@@ -239,8 +240,8 @@ void Console::note(const std::string& words) {
       [=, this] { say("noted: " + words); });
 }
 
-/// Reopens the trial in the database at once, so that it is shown again even if this program ends before that
-/// showing.
+/// Reopens a trial: the trial that is running or, if none is, the trial that finished last. Reopens it in the
+/// database at once, so that it is shown again even if this program ends before that showing.
 void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;

@@ -108,7 +108,7 @@ class Console {
   std::optional<Trouble> trouble_;  ///< the reason of the current pause
   std::optional<Ending> ending_;
   std::vector<TimingVerdict> verdicts_;  ///< verdicts on last_trial_
-  std::int64_t page_since_ns_ = 0;       ///< steady-clock time of the step's start, last frame or early end
+  std::int64_t page_since_ns_ = 0;       ///< steady-clock time of the latest step start, frame or early end
 
   /// Timing of the current stimulus so far.
   struct Course {

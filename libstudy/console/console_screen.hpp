@@ -14,8 +14,8 @@ struct ConsoleView {
   std::string now;          ///< the current step: "step 6 of 44: stimulus 'task', trial 3"
   std::string person;       ///< what the participant does
   std::string station;      ///< gaze source, free disk space and the station's name
-  std::string rate, strip;  ///< timing of the current showing
-  std::string last;         ///< timing of the last trial
+  std::string rate, strip;  ///< the current showing: timing in numbers; a strip_sign() per half second
+  std::string last;         ///< timing verdicts on the trial that finished last
   std::vector<std::string> alarms;
   std::vector<std::string> said;  ///< messages, oldest first; the newest that fit are shown
   std::string typed;              ///< the prompt and the text typed so far

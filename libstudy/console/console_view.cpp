@@ -26,7 +26,8 @@ std::string words_of(const Ending& ending) {
   return "INELIGIBLE: nothing more is asked; thank them";
 }
 
-/// The failure of a trial's timing; null if none.
+/// The alarm text if a stimulus of the trial was cut because it took too long, else if a timing verdict is
+/// Fail; null if neither.
 const char* failure_of(const std::vector<TimingVerdict>& verdicts) {
   const char* failure = nullptr;
   for (const TimingVerdict& one : verdicts) {
@@ -68,8 +69,8 @@ std::string Console::describe_cells(const PlannedTrial& trial) const {
 }
 
 /// Describes a showing's timing: verdict, grade, relative deviation of the mean frame rate, late frames and
-/// the largest lateness. Adds frame rates and the reason only while method and setting are revealed. For a
-/// showing without a schedule, returns only "no schedule" or the reason of its cut.
+/// the largest lateness. Adds frame rates and the verdict's reason only while method and setting are
+/// revealed. For a showing without a schedule, returns only "no schedule" or the reason of its cut.
 std::string Console::describe(const TimingVerdict& verdict) const {
   if (!(verdict.nominal.mean > 0))
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";

@@ -11,8 +11,8 @@ namespace study {
 
 /// Facts of the screen that shows the participant's window.
 struct ScreenFacts {
-  double reported_hz = 0;  ///< reported by the system; 0: none
-  double measured_hz = 0;  ///< measured from buffer swaps; 0: swaps do not wait for the screen
+  double reported_hz = 0;  ///< refresh rate that the system reports; 0: none
+  double measured_hz = 0;  ///< refresh rate measured by buffer swaps; 0: swaps do not wait
   std::optional<bool> compositor;
   bool software_gl = false;
 };

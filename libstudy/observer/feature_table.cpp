@@ -16,8 +16,9 @@ struct Row {
 };
 
 // Measured on an H200 on live fluid: vip-study run protocols/task1.toml --participants 6 --observer frames
-// --display headless --backend cuda. Ours-TSp equals Ours in the cells with tau > 0 at the paper's frame
-// rate, because Ours-TSp accelerates no particles there.
+// --display headless --backend cuda. Where the cell's frame rate in that file gives tau > 0 (tau: tolerance
+// of the frame rate, by the paper's PTPE model), Ours-TSp has the values of Ours, because it accelerates no
+// particles there.
 constexpr std::array<Row, 15> rows{{{"single_dam", "LoRes", {8.313, 0.01347}, {8.284, 0.01372}},
                                     {"single_dam", "FovFluid", {7.325, 0.01882}, {7.299, 0.01836}},
                                     {"single_dam", "Ours", {7.146, 0.02018}, {6.787, 0.02095}},

@@ -33,8 +33,8 @@ void read_observer_keys(std::string_view specification, std::size_t at, std::spa
 double read_observer_number(std::string_view specification, std::size_t at, std::string_view text, double min,
                             double max, const std::string& mend);
 
-/// The keys to write to the record. Omits the last key if its value is 0: records of earlier versions lack
-/// this key, and equal observers must have equal records.
+/// The keys to write to the record. Omits the last key (effects) if its value is 0: records of earlier
+/// versions lack this key, and equal observers must have equal records.
 template <std::size_t count>
 std::span<const ObserverKey> written(const std::array<ObserverKey, count>& keys) {
   return std::span<const ObserverKey>(keys).first(*keys.back().value == 0 ? count - 1 : count);

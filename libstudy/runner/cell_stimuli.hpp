@@ -37,7 +37,8 @@ class CellStimuli final : public StimulusSource {
 
  private:
   /// Identifies the current stimulus. For a bake only `bake` is set; for the empty stimulus nothing is set.
-  /// `rate` is set only for methods with temporal acceleration.
+  /// `rate`, the cell's frame rate, is set only for methods whose fluid depends on it (temporal
+  /// acceleration).
   struct Made {
     StimulusSpec what;
     std::optional<sim::FrameRate> rate;

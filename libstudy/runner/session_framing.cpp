@@ -21,7 +21,8 @@ bool follows_gaze(const std::string& method) { return sim::traits_of(sim::parse_
 
 bool differ(double a, double b) { return std::abs(a - b) > same_angle_deg; }
 
-/// Departure of a bake whose levels followed another visual angle than that of this session; empty: none.
+/// For a bake of a method that follows the gaze: a text if its particle levels were computed for another
+/// visual angle of the picture than this session's. Empty if not, and for other methods.
 std::string levels_departure(const sim::BakeHeader& bake, const FramedScene& framed) {
   const auto &baked = bake.view.visual_angle_deg, &seen = framed.framing.visual_deg;
   if (!follows_gaze(bake.method)) return "";
@@ -165,10 +166,11 @@ std::string mixed_pictures(const std::vector<FramedScene>& scenes) {
 void check_one_picture(const Protocol& protocol, const std::vector<FramedScene>& scenes) {
   const std::string mixed = mixed_pictures(scenes);
   if (mixed.empty() || protocol.accept_mixed_pictures) return;
-  throw base::Error("--stimulus", "pictures that are compared differ: " + mixed,
-                    "bake on this station at the session's size and angle, or bake particles only, which the "
-                    "session draws (vip-study bake --protocol); or write accept_mixed_pictures = true in the "
-                    "protocol, and the report names the difference");
+  throw base::Error(
+      "--stimulus", "pictures that are compared differ: " + mixed,
+      "bake particles only, which the session draws (vip-study bake --protocol without --keep "
+      "pictures); or bake the pictures on this station at the session's size and angle; or write "
+      "accept_mixed_pictures = true in the protocol: the report then names the difference");
 }
 
 void check_visible(const std::vector<FramedScene>& scenes) {

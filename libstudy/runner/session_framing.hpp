@@ -60,8 +60,9 @@ std::vector<SceneFraming> framing_record(const std::vector<FramedScene>& scenes)
 /// One line such as "Faucet, 1920x1080: camera 75 deg, 27.4 deg of the eye's view (ratio 0.37)".
 std::string describe_framing(const FramedScene& scene);
 
-/// Notes for the experimenter before the first participant, one line each: mixed_pictures() that the protocol
-/// accepts, an unknown visual angle although a method follows the gaze, and scaled pictures.
+/// Notes for the experimenter before the first participant, one line each: differences between compared
+/// pictures (mixed_pictures()), an unknown visual angle although a method follows the gaze, and baked
+/// pictures that are scaled to the display.
 std::vector<std::string> framing_notes(const Protocol& protocol, const std::vector<FramedScene>& scenes);
 
 }  // namespace study

@@ -26,8 +26,8 @@ class SessionSettings {
   /// settings.
   std::string description() const;
   /// Lines for each setting: its content and measured cost, a note for each shown scene other than the
-  /// measured scene, and a note if the tolerance tau of temporal acceleration follows the setting's beta
-  /// instead of the frame rate.
+  /// measured scene, and a note if the method's tolerance tau (frames/s) is computed from the setting's knob
+  /// beta instead of the frame rate.
   std::vector<std::string> notes(const Protocol& protocol) const;
 
  private:

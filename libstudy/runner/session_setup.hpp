@@ -27,7 +27,7 @@ struct SessionSetup {
   std::shared_ptr<GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
   std::shared_ptr<SlotSource> slots;     ///< source of a headset's frame slots; null: no headset
   std::unique_ptr<GazeTargets> targets;  ///< targets that validate an eye tracker; null: no eye tracker
-  WindowRequest request;  ///< combines the requests at the window or headset with others; may be empty
+  WindowRequest request;  ///< adds requests at the window or headset to the experimenter's; may be empty
   /// Seconds since the last input at the window or headset; empty without window and headset.
   std::function<std::optional<double>()> idle;
   /// Makes the terminal's keys answer the pages in a headset; empty without a headset.

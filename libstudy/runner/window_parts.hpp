@@ -18,7 +18,8 @@ namespace study {
 
 class HeadsetDisplay;
 
-/// Combines the requests at the window with the requests of `others`; see SessionHooks::request.
+/// Returns the request that the session must follow (SessionHooks::request): a request at the window or
+/// headset, such as a cut because the picture was not seen, or that of `others`, such as the experimenter's.
 using WindowRequest = std::function<Request(const std::function<Request()>& others)>;
 
 /// The parts of --display window. The window stays open while any part exists.

@@ -45,8 +45,9 @@ class FrameJournal {
   /// Buffers one frame, and the gaze and slots recorded up to this frame. Rethrows the error that stopped the
   /// thread, such as a full disk.
   void add(const FrameRecord& frame, const Recorded& recorded);
-  /// Ends the thread, commits the buffered gaze, slots and changes of the IPD as well as `last`, and returns
-  /// the frames that are not yet in the store. Rethrows as add() does.
+  /// Ends the thread, commits the buffered gaze, slots and changes of the IPD, and returns the frames that
+  /// are not yet in the store. last: what was recorded since the last add(), committed too. Rethrows the
+  /// error that stopped the thread.
   std::vector<FrameRecord> finish(const Recorded& last);
 
  private:

@@ -14,8 +14,8 @@ class TrialPlayer {
   TrialPlayer(const Running& run, Questioning& questioning)
       : run_(run), questioning_(questioning), repeats_(run) {}
 
-  /// Plays all steps. TrialAgain starts a new attempt, which asks all questions again. Returns the ending if
-  /// an answer ends the session.
+  /// Plays all steps. After a cut (exception TrialAgain, caught here) plays all steps again as a new attempt,
+  /// which asks all questions again. Returns the ending if an answer ends the session.
   std::optional<Ending> play(OpenUnit unit);
 
  private:

@@ -97,8 +97,8 @@ void AnswerJournal::write_mark() {
   anew_ = false;
 }
 
-/// Writes the mark of the last commit, or the whole journal if it was begun anew. Returns false if that
-/// fails.
+/// Appends the line that marks the last commit as kept, or writes the whole journal if it was begun anew.
+/// Returns false, and warns once, if that fails.
 bool AnswerJournal::try_mark() {
   try {
     write_mark();

@@ -85,8 +85,8 @@ class AnswerJournal {
 
 /// Call before a transaction that changes the whole database. If there is a journal, appends a line to it
 /// that announces the change and names the `persons` who withdraw. After that line, a journal that does not
-/// match the database is rewritten instead of refused, and salvage omits these people. base::Error as
-/// AnswerJournal().
+/// match the database is rewritten instead of refused, and salvage omits these people. base::Error if the
+/// journal already has rows that the database lacks, or other answers, or if it cannot be written.
 void prepare_rewrite(sqlite::Connection& database, const std::vector<std::string>& persons = {});
 /// Replaces the journal by one with the database's current rows, and overwrites the old journal's bytes.
 void rewrite_journal(sqlite::Connection& database);

@@ -79,7 +79,8 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
   return id;
 }
 
-/// Removes earlier exports at the path of `by` from this installation's register, unless their draft exists.
+/// Removes from this installation's register the earlier exports that the export `by` replaced at its path.
+/// Keeps an entry whose draft still exists, so that a withdrawal can find and delete the draft.
 void forget_replaced(const OwnExport& by) {
   try {
     std::set<std::string> replaced;

@@ -18,12 +18,12 @@ namespace study {
 std::set<std::string> everybody(sqlite::Connection& database);
 
 /// Stores missing labels (export_labels.hpp) in a short write to the database. Call it before reading the
-/// data of a public export. base::Error as RegisteredExport().
+/// data of a public export. base::Error if the database cannot be written.
 void label_everybody(const std::filesystem::path& database);
 
 /// Opens a study for reading, so that its export can be registered while the data are read. A database that
 /// is not in WAL mode is switched to it: in other modes a database cannot be written while it is read.
-/// base::Error as RegisteredExport().
+/// base::Error if the database cannot be written.
 std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 
 /// Registers one export while it is made. `people`: the persons (session.person) whose data it contains.

@@ -51,7 +51,7 @@ struct PermissionChange {
 /// Records new permissions for all sessions of a participant. A later answer on a consent page overrides
 /// them. A refusal of gaze deletes gaze samples, head poses and eye-tracker validations and overwrites their
 /// bytes. If a kill interrupts the deletion, the next Store, withdrawal, merge or change of permissions
-/// finishes it. base::Error as read_permissions(), or if the database is in use.
+/// finishes it. base::Error if the code is unknown, the participant withdrew, or the database is in use.
 PermissionChange change_permissions(const std::filesystem::path& database, const std::string& participant,
                                     const PermissionRequest& request);
 

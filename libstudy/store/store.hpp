@@ -54,9 +54,11 @@ struct SessionPlan {
   std::optional<std::string> observer;  ///< simulated observer; none = a person
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
-  std::optional<std::string> ptpe;   ///< full text of the PTPE file; none: the paper's model
-  std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
-  std::string station;               ///< name of the station that records the session
+  std::optional<std::string> ptpe;  ///< full text of the PTPE file; none: the paper's model
+  /// "tracked", "head", "mouse", "fixed" (assumed in the middle of the picture), "fixation" (the protocol
+  /// makes people look at the middle) or "none"
+  std::string gaze_source = "none";
+  std::string station;  ///< name of the station that records the session
   /// number of that station; open_runs() leaves it empty, because slot and seed already depend on it
   std::optional<StationNumber> station_number;
   std::optional<double> screen_width_mm, viewing_distance_mm;
@@ -106,7 +108,7 @@ enum class EarlyEnd {
   Refused,      ///< the participant did not consent
   NotEligible,  ///< an answer on a screening or demographics page ruled the participant out
   Stopped,      ///< a stop rule, the participant or the experimenter ended the session
-  DroppedOut    ///< the participant left (exception Left); the slot is free again
+  DroppedOut    ///< the participant left (exception Left); another may get the same slot (Plan::slot)
 };
 
 struct Ending {
@@ -184,12 +186,12 @@ class Store {
   /// process began and did not end.
   std::vector<OpenRun> open_runs();
 
-  /// Slots of the sessions that count for the balance of this protocol. Sessions that were withdrawn,
-  /// refused, not eligible or dropped out do not count; neither do test sessions, unless the protocol is test
-  /// data.
+  /// The slots (Plan::slot: positions in the counterbalancing) of this protocol's sessions, one entry each;
+  /// the next participant gets a slot that is used least. Sessions that were withdrawn, refused, not eligible
+  /// or dropped out do not count; neither do test sessions, unless the protocol is test data.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
-  /// The distinct station numbers of the sessions that taken_slots() counts. An empty entry means that some
-  /// of these sessions have no station number.
+  /// The distinct station numbers ("2 of 5") of the sessions that taken_slots() counts. An empty entry means
+  /// that some of these sessions have no station number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
   /// Commits the cells that an adaptive procedure chose for a trial that is not done.

@@ -29,16 +29,17 @@ struct Withdrawal {
 /// does the withdrawal.
 inline constexpr const char* withdrawal_request = "withdrawal wished";
 
-/// Codes of the participants with an event withdrawal_request. base::Error as open_study().
+/// Codes of the participants with an event withdrawal_request. base::Error if the database cannot be opened
+/// or, unless study.incomplete, lacks rows of its journal of answers.
 std::vector<std::string> requested_withdrawals(const StudyFile& study);
 std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 
 /// Deletes a participant's data from `database`, its log, its journal of answers, its backups and the
 /// personal file, and overwrites the bytes. Also deletes registered exports (delete_exports_of_withdrawn()).
-/// Only a tombstone stays: a row that says who withdrew. The participant's slot in the assignment is free
-/// again. If a kill interrupts the withdrawal, repeat it or open the database with a Store, which finishes
-/// it. Repeating also retries clean-ups that failed. base::Error if the participant is unknown or the
-/// database is in use.
+/// Only a tombstone stays: a row that says who withdrew. The participant's slot (position in the
+/// counterbalancing) is free again. If a kill interrupts the withdrawal, repeat it or open the database with
+/// a Store, which finishes it. Repeating also retries clean-ups that failed. base::Error if the participant
+/// is unknown or the database is in use.
 Withdrawal withdraw(const std::filesystem::path& database, const std::string& participant);
 /// withdraw() for a database that is already open for writing under its WriterLock.
 Withdrawal withdraw(sqlite::Connection& database, const std::string& participant);

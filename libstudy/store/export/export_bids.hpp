@@ -11,10 +11,12 @@
 
 namespace study {
 
-/// Writes a public export, which contains only shared_sessions(), into `folder`. The value "n/a" means not
-/// known. The rules for `folder` and the errors are those of export_csv(), but the umask decides who can read
-/// the files. Each table except the motion recording's channels has a JSON description. The files, besides
-/// README.md, dataset_description.json and those in the folder code:
+/// Writes a public export, which contains only shared_sessions(), into `folder`; the umask decides who can
+/// read it. `folder` may be absent, empty or an unchanged earlier BIDS export, which is replaced.
+/// base::Error, with the folder unchanged, if it has added or changed files, or if the database cannot be
+/// written, which must register the export. The value "n/a" means not known. Each table except the motion
+/// recording's channels has a JSON description. The files, besides README.md, dataset_description.json and
+/// those in the folder code:
 /// - participants.tsv, and sub-<code>/sub-<code>_sessions.tsv.
 /// - sub-<code>/ses-<protocol>v<visit>/beh/..._task-<protocol>_events.tsv for each session: one line per
 ///   stimulus shown, beginning with onset and duration in seconds. The line of a trial's last stimulus has

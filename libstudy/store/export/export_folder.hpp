@@ -23,7 +23,7 @@ struct ExportedFile {
   std::int64_t rows = 0;
 };
 
-/// Who may read an export. Folders of an export for Readers::Owner have mode 0700.
+/// Who may read an export. Readers::Owner: its folders have mode 0700. Readers::AsUmask: the umask decides.
 using base::Readers;
 
 /// The result of a public export: its files, and the numbers of people that it includes and omits.

@@ -9,9 +9,11 @@
 
 namespace study {
 
-/// Writes a public export, which contains only shared_sessions(), into `folder`. The rules for `folder` and
-/// the errors are those of export_csv(), but the umask decides who can read the files. README.md,
-/// dataset_description.json and the folder materials describe the whole data set. The files for each session:
+/// Writes a public export, which contains only shared_sessions(), into `folder`; the umask decides who can
+/// read it. `folder` may be absent, empty or an unchanged earlier Psych-DS export, which is replaced.
+/// base::Error, with the folder unchanged, if it has added or changed files, or if the database cannot be
+/// written, which must register the export. README.md, dataset_description.json and the folder materials
+/// describe the whole data set. The files for each session:
 /// - data/study-<protocol>_subject-<code>_session-<protocol>v<visit>_data.csv: the session's rows of the
 ///   table of ratings (rating_table.hpp).
 /// - ..._description-pages_data.csv: answers on pages, without free text.

@@ -129,7 +129,8 @@ std::string column_name(const std::string& factor, std::set<std::string>& taken)
   return name;
 }
 
-/// Adds the columns of a protocol with factors about the first or the second stimulus of a trial.
+/// Adds the columns that only protocols with factors have, about one stimulus of a trial. prefix begins the
+/// columns' names ("first_" or "second_"); cell and shown: the stimulus's cell and presentation in the SQL.
 void add_factor_columns(const std::vector<FactorColumn>& factors, const std::string& prefix,
                         const std::string& cell, const std::string& shown, std::vector<RatingColumn>& out) {
   for (const FactorColumn& one : factors)

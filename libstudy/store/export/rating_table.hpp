@@ -33,13 +33,14 @@ struct FactorColumn {
   std::string level_sql(const std::string& cell) const;
 };
 
-/// The factors of the protocols of all sessions that `condition` selects, in the order of their protocols;
-/// empty: no protocol has factors. taken: names that no column may have.
+/// The factors of the protocols of all sessions that the SQL condition selects, such as "session.visit = 1",
+/// in the order of their protocols; empty: no protocol has factors. taken: names that no column may have.
 std::vector<FactorColumn> factor_columns(sqlite::Connection& database, const std::string& condition,
                                          std::set<std::string> taken);
 
-/// The columns for the sessions that `condition` selects. If a protocol of these sessions has factors, also
-/// the columns of their levels, the timing profile, p99_ms, hitches and animation_error_ms.
+/// The columns of the table of ratings, with the sessions that the SQL condition selects. If a protocol of
+/// these sessions has factors, also the columns of their levels, the timing profile, p99_ms, hitches and
+/// animation_error_ms.
 std::vector<RatingColumn> rating_columns(sqlite::Connection& database, const std::string& condition = "1");
 
 /// Meanings of a showing's columns `counts` and `why_not` in the descriptions of exports.
@@ -61,8 +62,9 @@ inline constexpr const char* showing_tau_meaning =
 /// if the column is about neither.
 std::string rating_subject(const RatingColumn& column);
 
-/// SQL that selects rating_columns() in order, one row per trial and question. The schema's view `judgement`
-/// selects the answer and the showing. condition: SQL that selects sessions, e.g. "session.session_id = 3".
+/// SQL that selects rating_columns() in order, one row per trial and question. If a trial was shown or a
+/// question answered several times, the schema's view `judgement` selects the last answer that was not set
+/// aside, and its showing. condition: SQL that selects sessions, e.g. "session.session_id = 3".
 std::string rating_table_sql(sqlite::Connection& database, const std::string& condition = "1");
 
 }  // namespace study

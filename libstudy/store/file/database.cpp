@@ -144,7 +144,7 @@ bool has_bytes(const fs::path& path) {
   return !ignored && bytes > 0;
 }
 
-/// holds_nothing() for a file that begins with `head`, at most header_bytes bytes.
+/// True if the file never had a commit (holds_nothing()). head: the file's first bytes, at most header_bytes.
 bool empty_or_emptied(const fs::path& path, const std::string& head) {
   if (!has_bytes(path)) return true;
   if (!was_empty_before(path.string() + "-journal")) return false;
@@ -239,8 +239,9 @@ void set_version(Connection& database, std::size_t version) {
 /// Makes the newest schema from one file, schema.sql. Running all schema steps would give the same schema
 /// more slowly: SQLite reads the whole schema again for each table that a step renames.
 void make_schema(Connection& database, std::size_t version) {
-  // Commits application_id first, with schema version 0. holds_nothing() trusts a journal that would empty
-  // the file only while the schema version is at most 1.
+  // Commits application_id alone first, with schema version 0. If a power cut interrupts this first commit,
+  // the journal beside the file empties it; holds_nothing() takes such a journal for that of another file if
+  // the file's schema version is above 1.
   sqlite::Transaction named(database);
   set_version(database, 0);
   named.commit();

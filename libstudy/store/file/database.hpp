@@ -37,7 +37,8 @@ SchemaSteps read_schema_steps();
 /// Open::Read never changes an existing log. With Open::Create and Open::Write, SQLite copies no page of an
 /// existing log into the file until the caller has compared the database with the journal of answers and
 /// calls Connection::keep_log(false). max_pages > 0 limits the file to that many pages (4 KiB each in a new
-/// database). waiting: as for Connection::wait_with().
+/// database). waiting: decides how long to wait for another program's lock
+/// (Connection::wait_with()); if empty, five seconds.
 std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,
                                                   const SchemaSteps& steps, std::int64_t max_pages = 0,
                                                   const sqlite::Waiting& waiting = {});

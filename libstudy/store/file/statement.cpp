@@ -55,8 +55,9 @@ Statement& Statement::bind_from(int index, const Statement& row, int column) {
 void Statement::expect_parameters(std::size_t given) const {
   const auto wanted = static_cast<std::size_t>(sqlite3_bind_parameter_count(handle_));
   if (given == wanted) return;
-  throw std::logic_error(std::to_string(given) + " values for the " + std::to_string(wanted) +
-                         " parameters of: " + sqlite3_sql(handle_));
+  throw std::logic_error("Statement::bind_all(): " + std::to_string(given) + " values for the " +
+                         std::to_string(wanted) + " parameters of: " + sqlite3_sql(handle_) +
+                         "; pass one value for each parameter");
 }
 
 bool Statement::step() {

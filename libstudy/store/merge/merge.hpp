@@ -11,8 +11,11 @@
 
 namespace study {
 
-/// How evenly the sessions of one protocol use the assignment. A session counts if its state is open, done or
-/// stopped and its mark as test data equals that of the protocol, as in Store::taken_slots().
+/// How evenly the sessions of one protocol use its assignment: the slots (numbered positions in the
+/// counterbalancing) that participants get in turn. A slot fixes the groups of cells that its participant
+/// sees, their sequence and the order within them, as far as the protocol does not draw these at random. A
+/// session counts if its state is open, done or stopped and its mark as test data equals that of the
+/// protocol.
 struct Balance {
   std::string name, version;
   int sessions = 0;  ///< number of sessions that count
@@ -45,7 +48,7 @@ struct Merge {
   /// Protocols with equal name and version but different texts; their datasets stay separate.
   std::vector<std::string> namesakes;
   std::vector<Balance> balance;               ///< balance of the merged database, by protocol
-  std::vector<std::string> station_troubles;  ///< reasons why stations' shares of the assignment overlap
+  std::vector<std::string> station_troubles;  ///< reasons why stations may have used the same slots
 };
 
 /// Adds the data of the databases `sources` to the database `into`.

@@ -23,7 +23,7 @@ struct SessionCopy {
   std::int64_t events = 0, frames = 0, played = 0;  ///< numbers of rows, which show the copy's progress
   std::int64_t gaze = 0;                            ///< number of gaze samples, head poses and validations
   std::optional<StationNumber> station_number;
-  bool counts = false;  ///< true: the session counts for the balance, as in Store::taken_slots()
+  bool counts = false;  ///< true: the session counts as a use of its slot (Store::taken_slots())
 };
 
 struct Tombstone {
@@ -49,9 +49,10 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 /// order of the sources.
 std::map<std::string, std::string> name_people(const Content& content);
 
-/// Reasons why the stations' shares of the assignment overlap: two sources with the same station number (or
-/// both without one) each have a session that the other lacks; sessions were recorded with different numbers
-/// of stations; or only some sessions have a station number. Each reason is a sentence without a full stop.
+/// Reasons why stations assigned the same slots (positions in the counterbalancing, of which each
+/// station must use its own share): two sources with the same station number (or both without one) each have
+/// a session that the other lacks; sessions were recorded with different numbers of stations; or only some
+/// sessions have a station number. Each reason is a sentence without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the chosen sessions, with the people's new codes `names`, into `target`, an empty database of the

@@ -1,5 +1,5 @@
 /// Reads the sources of a merge: chooses the copy of each session that counts, gives people distinct codes,
-/// and checks that the stations used disjoint shares of one assignment.
+/// and checks that the stations assigned disjoint shares of the slots (positions in the counterbalancing).
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -199,7 +199,8 @@ std::string with_digits(const Person& person) {
          base::sha256_hex(person.uid).substr(0, digits);
 }
 
-/// The code "<code>-<station>", or with_digits() if there is no station or the result is too long.
+/// The code "<code>-<station>"; if there is no station or the result is too long, "<code>-<digits of a hash>"
+/// (with_digits()).
 std::string with_station(const Person& person) {
   const std::string name = person.code + '-' + as_code(person.station);
   return person.station.empty() || name.size() > longest_code ? with_digits(person) : name;
@@ -231,7 +232,7 @@ std::map<std::string, std::string> name_people(const Content& content) {
 
 namespace {
 
-/// The sessions in one source that have the same protocol and station number.
+/// The sessions in one source that count for one protocol and have the same station number.
 struct Dealt {
   std::size_t source = 0;
   std::optional<StationNumber> number;
@@ -268,7 +269,8 @@ std::string files_of(const Content& content, const Dealt& a, const Dealt& b) {
   return a.source == b.source ? file(a) : file(a) + " and " + file(b);
 }
 
-/// Describes why the slots of `a` and `b` overlap; empty if they do not.
+/// Describes why the sessions of `a` and `b` may have been assigned the same slots (positions in the
+/// counterbalancing); empty if nothing shows that.
 std::string trouble_of(const Content& content, const Dealt& a, const Dealt& b) {
   const std::string files = files_of(content, a, b);
   if (a.source != b.source && a.number == b.number && went_apart(a, b))

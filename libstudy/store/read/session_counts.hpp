@@ -9,7 +9,7 @@
 namespace study {
 
 struct SessionCounts {
-  std::string participant, state;    ///< participant code; state as in SessionRow::state
+  std::string participant, state;    ///< participant code; "open", "done" or how the session ended early
   std::int64_t units = 0, done = 0;  ///< pages and trials: all, and those that are done
   std::int64_t trials = 0, answered = 0, excluded = 0;
   std::int64_t showings = 0, cut = 0, counting = 0;  ///< all; cut short; those with an answer that counts

@@ -39,7 +39,8 @@ constexpr const char* cell_counts_sql =
     "LEFT JOIN counted n ON n.cell = c.cell WHERE c.protocol_id = ?1 AND c.levels IS NOT NULL ORDER BY "
     "c.cell";
 
-/// `of`: the column that selects sessions, s.run_id or s.protocol_id.
+/// SQL that selects the timing certificate's lines, one per cell. of: the column, s.run_id or s.protocol_id,
+/// whose value (the parameter of the SQL) selects the sessions.
 std::string certificate_sql(FpsMean mean, const std::string& of) {
   const std::string realised = mean == FpsMean::Harmonic ? "p.mean_fps" : "p.mean_arithmetic_fps";
   return "SELECT c.scene, c.method, c.n_star, c.mean_fps, c.sd_fps, c.duration_s, count(*), avg(" + realised +

@@ -47,7 +47,7 @@ struct SessionRow {
   std::string state;  ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
   std::int64_t units = 0, done = 0;   ///< pages and trials: all, and those that are done
   std::int64_t excluded = 0;          ///< number of excluded trials
-  std::optional<bool> gaze, sharing;  ///< permissions as in SessionPermission
+  std::optional<bool> gaze, sharing;  ///< true: allowed; false: refused or unanswered; none: not asked
 };
 
 struct StudyStatus {
@@ -77,10 +77,11 @@ struct CertificateRow {
   /// Only of a protocol with factors: factor and level, and the timing profile in words.
   std::vector<std::pair<std::string, std::string>> levels;
   std::string timing;
-  double p99_ms = 0;      ///< mean over the presentations
+  double p99_ms = 0;      ///< 99th percentile of the frame intervals, mean over the presentations
   double longest_ms = 0;  ///< largest interval of all presentations
-  double hitches = 0;     ///< mean over the presentations
-  /// Mean over the presentations; none: content followed frames instead of time.
+  double hitches = 0;     ///< intervals longer than 1.5 times the median, mean over the presentations
+  /// Mean |step of simulated time - frame interval| of a presentation, averaged over the presentations; none:
+  /// content followed frames instead of time.
   std::optional<double> animation_error_ms;
 };
 

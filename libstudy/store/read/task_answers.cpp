@@ -63,7 +63,7 @@ Block trials(Connection& database, std::int64_t protocol_id) {
 /// Parses the stored text of a protocol and applies the stored trial duration. The first format named no
 /// methods and can no longer be parsed. A protocol of that format is rebuilt from the tables as far as
 /// analyses need it: name, version, hash, cells without stimuli, and questions; `participants` is 0, not
-/// known. where: names the database in messages. base::Error as parse_protocol().
+/// known. where: names the database in messages. base::Error if the text of a later format cannot be parsed.
 Protocol stored_protocol(Connection& database, std::int64_t protocol_id, const std::string& where) {
   Statement row(database,
                 "SELECT name, version, sha256, test_data, text, trial_seconds FROM protocol WHERE "

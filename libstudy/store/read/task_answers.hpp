@@ -18,7 +18,9 @@
 
 namespace study {
 
-/// One stimulus of a trial, with the timing of its showing that counts.
+/// One stimulus of a trial, with its timing. If the trial was shown several times, the timing is of the
+/// earliest showing that an answer judges or, without answers, of the last showing played to its end;
+/// showings that were set aside are left out.
 struct TaskShowing {
   StimulusSpec what;
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
@@ -74,8 +76,9 @@ struct TaskSession {
   /// "planned" (nothing shown and no unit done), "open" (begun), "done", "refused", "not eligible", "stopped"
   /// or "dropped out".
   std::string state;
-  /// Gaze that the fluid used: "tracked", "head", "mouse", "fixed", "fixation" or "none". If a showing used
-  /// another source than planned, that source.
+  /// Gaze that the fluid used: "tracked", "head", "mouse", "fixed" (assumed in the middle of the picture),
+  /// "fixation" (the protocol makes people look at the middle) or "none". If a showing used another source
+  /// than planned, that source.
   std::string gaze_source;
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
@@ -137,9 +140,9 @@ struct TaskStudy {
 };
 
 /// Reads all protocols, sessions, trials and answers. If a trial was shown several times, the schema's view
-/// trial_showing selects the showing that counts. base::Error, which names the file, if the file is missing,
-/// damaged, not a database of vip-study, or written by a newer program, or if it lacks rows of its journal of
-/// answers (open_study()).
+/// trial_showing selects the showing to read (see TaskShowing). base::Error, which names the file, if the
+/// file is missing, damaged, not a database of vip-study, or written by a newer program, or if it lacks rows
+/// of its journal of answers (open_study()).
 TaskStudy read_tasks(const StudyFile& file);
 /// Adds the answers to TaskProtocol::about_people. Personal answers come from the personal file, other
 /// answers from the database. base::Error as read_tasks().

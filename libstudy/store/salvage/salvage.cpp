@@ -153,8 +153,8 @@ std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
 }
 
 /// Reads a copy of a database that has tables, columns, views or triggers that are not from vip-study.
-/// Returns a temporary database with the other parts only, upgraded to the newest schema. Adds descriptions
-/// of the omitted parts to `left_out`.
+/// Returns a temporary database with the parts that are from vip-study, upgraded to the newest schema. Adds
+/// descriptions of all other parts to `left_out`.
 std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
                                                        std::vector<std::string>& left_out) {
   Connection foreign(copied, Open::Write);
@@ -223,8 +223,8 @@ struct Damaged {
   bool use_log;
 };
 
-/// Calls `take` for the rows of all large tables (`large` true), or of all other tables. Reads from `sound`,
-/// or page by page if `sound` is null.
+/// Calls `take` for the rows of the large tables (`large` true: frames, slots, head poses, gaze,
+/// validations), or of all other tables. Reads from `sound`, or page by page if `sound` is null.
 void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
                const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);
