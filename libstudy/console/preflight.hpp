@@ -12,7 +12,7 @@ namespace study {
 /// Facts of the screen that shows the participant's window.
 struct ScreenFacts {
   double reported_hz = 0;  ///< refresh rate that the system reports; 0: none
-  double measured_hz = 0;  ///< refresh rate measured by buffer swaps; 0: swaps do not wait
+  double measured_hz = 0;  ///< refresh rate from buffer swaps; 0: swaps do not wait for the screen
   std::optional<bool> compositor;
   bool software_gl = false;
 };

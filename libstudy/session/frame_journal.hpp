@@ -63,7 +63,7 @@ class FrameJournal {
   std::mutex mutex_;
   std::condition_variable wake_;
   Unwritten pending_;
-  std::vector<std::int64_t> onsets_ns_;  ///< predicted onset of each added frame
+  std::vector<std::int64_t> onsets_ns_;  ///< onset of each added frame: predicted, else submission time
   bool stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;

@@ -193,7 +193,7 @@ void check_personal(const Running& run) {
   if (asks && !run.parts.personal) {
     throw base::Error("protocol " + run.protocol.name,
                       "asks personal questions, and there is no file for the answers",
-                      "give the session a file of personal data");
+                      "set SessionParts::personal to a file of personal data");
   }
 }
 

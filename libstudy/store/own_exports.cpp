@@ -177,7 +177,8 @@ bool was_deleted_here(const fs::path& path, const std::string& sha256) {
 }
 
 std::string marker_of(const std::string& kind) {
-  // BIDS accepts files that it does not define in the folder code, and Psych-DS in the folder materials.
+  // Only in the folder code does BIDS accept files that it does not define; Psych-DS, in the folder
+  // materials.
   static const std::map<std::string, std::string> names{
       {"csv", "export.sha256"}, {"bids", "code/export.sha256"}, {"psych-ds", "materials/export.sha256"}};
   const auto name = names.find(kind);

@@ -20,7 +20,8 @@ namespace {
 
 std::int64_t schema_number(Connection& database) { return database.integer("PRAGMA user_version"); }
 
-/// Journal lines of a batch that has these rows and is marked as kept.
+/// The journal's lines for one commit: these rows, then the marks that the batch is ready and kept
+/// (committed).
 std::string batch(const std::string& rows, std::int64_t number) {
   return rows + ready_line(number) + kept_line(number);
 }
@@ -116,7 +117,8 @@ std::string words_of(const Comparison& found) {
 }
 
 std::set<std::string> finish_what_was_begun(Connection& database, const JournalContent& content) {
-  // A torn batch was not completely on disk at a power cut, so its commit had not begun: ignore it.
+  // A torn batch has unreadable lines: it was not completely on disk at a power cut, so its commit had not
+  // begun. Ignore it.
   if (!content.rewriting && !content.torn) take_over(database, content.pending);
   if (content.rewriting) finish_withdrawals(database, content.forgotten);
   return delete_refused_gaze(database);

@@ -38,8 +38,8 @@ struct SceneFraming {
   std::string scene;                            ///< scene file as the protocol names it
   int width_px = 0, height_px = 0;              ///< size of the picture as it is drawn
   int shown_width_px = 0, shown_height_px = 0;  ///< size on the display; a bake's picture may be scaled
-  double camera_angle_deg = 0;                  ///< vertical angle of the camera, in (0, 180)
-  std::optional<double> visual_angle_deg;       ///< vertical angle of the picture at the eye; none: not known
+  double camera_angle_deg = 0;                  ///< vertical field of view of the camera, in (0, 180)
+  std::optional<double> visual_angle_deg;       ///< vertical visual angle of the picture; none: not known
   std::vector<int> cells;                       ///< cells with this framing, indices into Design::cells
   std::vector<int> copied;  ///< cells whose pictures come from a bake; the session draws the others
   std::string renderer;     ///< renderer that draws or drew the pictures; empty: not known
@@ -89,7 +89,7 @@ struct OpenUnit {
 /// A session with its open units, in the order of their positions.
 struct OpenSession {
   std::int64_t id = 0;
-  SessionPlan plan;  ///< without units and trials; the slot is set
+  SessionPlan plan;  ///< without the lists of units and trials; Plan::slot is set
   std::size_t planned = 0, done = 0;
   std::vector<OpenUnit> units;
 };
@@ -128,7 +128,8 @@ struct ValidatedPoint {
   double azimuth_deg = 0, elevation_deg = 0;  ///< direction of the target
   std::int64_t samples = 0, valid = 0;        ///< number of samples, and of valid samples
   std::optional<double> accuracy_deg;         ///< angle from target to mean gaze; none: no valid sample
-  std::optional<double> sd_deg, rms_s2s_deg;  ///< precision; none: too few samples
+  /// Precision: rms angle to the mean gaze, and rms angle from sample to sample; none: too few samples.
+  std::optional<double> sd_deg, rms_s2s_deg;
 };
 
 /// An answer to be stored.

@@ -85,7 +85,8 @@ void insert_head(Statement& insert, std::int64_t presentation, std::int64_t slot
 
 }  // namespace
 
-/// The comparison with the last row omits measured values, which vary slightly between equal headsets.
+/// Compares with the session's last row all columns but the measured refresh rate and the fields of view,
+/// which vary slightly between equal headsets.
 void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
   const auto& [left, right] = headset.eyes;
   Transaction transaction(*database_);

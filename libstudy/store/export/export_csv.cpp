@@ -116,7 +116,8 @@ bool is_csv_export(const fs::path& folder) {
 
 constexpr ExportKind csv_kind{"csv", is_csv_export, is_csv_name};
 
-/// column_meanings(), cached per table: meaning_of() needs a table's meanings again for each of its columns.
+/// The columns of a table with their meanings (column_meanings()), parsed once per table: meaning_of() needs
+/// them again for each column.
 const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const std::string& create_sql) {
   thread_local std::map<std::pair<std::string, std::string>, std::vector<ColumnMeaning>> known;
   const auto [found, fresh] = known.try_emplace({table, create_sql});

@@ -21,7 +21,7 @@ struct RatingColumn {
   std::string type = "INTEGER";  ///< SQL type of the expression
 };
 
-/// A factor of a protocol of format 3, as a column of an export.
+/// A factor of the design (protocol files of format 3 can name factors), as a column of an export.
 struct FactorColumn {
   /// Name of the column: the letters, digits and '_' of the factor's name ("factor" if it has none), followed
   /// by "_level" while another column has this name.

@@ -93,7 +93,7 @@ std::string FileWatch::trouble() {
     return keeps_a_log(database_) ? "lost its log " + log_.string() + " while it was in use" : "";
   if (!written_by_somebody()) return {};
   // A program that copies the log into the file has the lock copy_lock during the copy. If another program
-  // has the lock now, a later call of trouble() decides.
+  // has the lock now, the change may be such a copy: a later call of trouble() decides.
   const auto lock = [this](int how) {
     sqlite3_file* main = main_file(database_);
     return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;

@@ -112,7 +112,7 @@ std::string describe(const Balance& balance) {
 
 namespace {
 
-/// A person with sessions in `into` before the merge, with the code there.
+/// A person with sessions in the database `into` before the merge, with their participant code in it.
 struct Resident {
   std::string person, participant;
   Stock stock;

@@ -20,7 +20,7 @@ struct SessionCopy {
   std::string uid, person, code, station, run_uid, planned_utc, protocol_sha256;
   int visit = 1;
   bool test_data = false;
-  std::int64_t events = 0, frames = 0, played = 0;  ///< numbers of rows, which show the copy's progress
+  std::int64_t events = 0, frames = 0, played = 0;  ///< row counts: its progress; played: presentations
   std::int64_t gaze = 0;                            ///< number of gaze samples, head poses and validations
   std::optional<StationNumber> station_number;
   bool counts = false;  ///< true: the session counts as a use of its slot (Store::taken_slots())
@@ -49,7 +49,7 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 /// order of the sources.
 std::map<std::string, std::string> name_people(const Content& content);
 
-/// Reasons why stations assigned the same slots (positions in the counterbalancing, of which each
+/// Reasons why stations may have assigned the same slots (positions in the counterbalancing, of which each
 /// station must use its own share): two sources with the same station number (or both without one) each have
 /// a session that the other lacks; sessions were recorded with different numbers of stations; or only some
 /// sessions have a station number. Each reason is a sentence without a full stop.

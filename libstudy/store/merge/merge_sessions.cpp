@@ -232,7 +232,7 @@ std::map<std::string, std::string> name_people(const Content& content) {
 
 namespace {
 
-/// The sessions in one source that count for one protocol and have the same station number.
+/// The sessions in one source with the same protocol and station number that count as uses of their slots.
 struct Dealt {
   std::size_t source = 0;
   std::optional<StationNumber> number;

@@ -16,8 +16,8 @@
 namespace study {
 
 /// For a cell of a protocol with factors: the number of trials of stimulus blocks that show it, and how many
-/// of them are answered. A trial whose cell an adaptive procedure has yet to choose counts for the first cell
-/// of its track.
+/// of them are answered. A trial whose cell an adaptive procedure has yet to choose counts for the first of
+/// the cells among which the procedure chooses.
 struct CellCount {
   std::vector<std::pair<std::string, std::string>> levels;  ///< factor and level
   std::int64_t trials = 0, answered = 0;
@@ -73,7 +73,7 @@ struct CertificateRow {
   std::int64_t frames = 0, late = 0;
   double worst_late_ms = 0;
   std::int64_t pass = 0, degraded = 0, fail = 0;
-  std::string grades;  ///< the distinct timing grades of the presentations, best first: "A,D"
+  std::string grades;  ///< distinct grades (TimingGrade: evidence for onset times), best first: "A,D"
   /// Only of a protocol with factors: factor and level, and the timing profile in words.
   std::vector<std::pair<std::string, std::string>> levels;
   std::string timing;

@@ -307,7 +307,8 @@ std::vector<Question> questions_about_people(const Protocol& protocol) {
   return out;
 }
 
-/// Adds to `out` the answers to about_people that the database contains, as text like in the personal file.
+/// Adds to `out` the answers to protocol.about_people that are not personal and so are in the database. An
+/// answer becomes text: the words of a choice, the number of any other score.
 void add_stored(Connection& database, const TaskProtocol& protocol, std::vector<PersonalEntry>& out) {
   Statement row(
       database,

@@ -24,7 +24,7 @@ namespace study {
 struct TaskShowing {
   StimulusSpec what;
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
-  bool played = false;             ///< true: the stimulus was shown; false: it has no timing
+  bool played = false;             ///< true: the stimulus was shown to its end; false: it has no timing
   std::optional<Verdict> verdict;  ///< timing verdict; none: no schedule, and not cut for overrunning
   TimingGrade grade = TimingGrade::CpuSubmit;
   std::string reason;  ///< why the timing verdict is not pass
@@ -51,7 +51,7 @@ inline constexpr const char* interrupted_reason = "interrupted";
 
 struct TaskTrial {
   int position = 0;   ///< 0-based order among the session's trials
-  std::string kind;   ///< "stimulus", "practice" or "repeat"
+  std::string kind;   ///< kind of its block: "stimulus", "practice" or "repeat"
   TaskShowing first;  ///< first or only stimulus
   std::optional<TaskShowing> second;
   std::optional<std::string> excluded;  ///< the experimenter's reason, or interrupted_reason
@@ -84,9 +84,9 @@ struct TaskSession {
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
   std::string first_answer_utc;  ///< time of the session's first answer, by the station's clock; empty: none
-  /// Vertical angle of the camera and of the picture at the eye: "camera 75 degrees, eye 27.4 degrees, ratio
-  /// 0.37". Several pairs of angles are joined by "; ". "not known": recorded by an earlier version. Empty:
-  /// nothing was drawn.
+  /// Vertical field of view of the camera, and vertical visual angle of the picture at the eye: "camera 75
+  /// degrees, eye 27.4 degrees, ratio 0.37". Several pairs of angles are joined by "; ". "not known":
+  /// recorded by an earlier version. Empty: nothing was drawn.
   std::string angles;
   /// Events by which the experimenter lost blindness: "mirror opened", "setting revealed" or both, joined by
   /// " and "; empty: the experimenter stayed blind.
@@ -116,7 +116,7 @@ struct TaskProtocol {
   std::vector<TaskSession> sessions;
   double content_step_s = 1.0 / 60;
   std::vector<EffectSet> effects = {};  ///< levels of the factor effects; empty: effects are not a factor
-  bool paint_temperature = false;       ///< Design::paint_temperature
+  bool paint_temperature = false;       ///< true: pictures show temperatures over the water
   /// Method and effects of each of `methods`; empty if effects are not a factor.
   std::vector<StimulusSpec> treatments = {};
 

@@ -59,7 +59,8 @@ class Allowance {
   std::size_t left_;
 };
 
-/// The payload of a cell, including its overflow pages.
+/// The record in a cell (an entry of a B-tree page), including its overflow pages; none if it is damaged or
+/// the allowance is used up. table: true for a table with row numbers, false for a table WITHOUT ROWID.
 std::optional<std::string> payload_at(const Pages& pages, std::string_view page, Cursor cell,
                                       std::uint64_t size, bool table, Allowance& allowance) {
   const std::size_t usable = pages.usable();
