@@ -14,7 +14,7 @@ namespace study {
 /// that fail. "-" as nominal: frames were shown as fast as the method ran. Scene, n_*, method and effects are
 /// columns if the rows differ in them, else words of the heading. A row with a failed trial ends in FAIL,
 /// another row with a degraded trial in DEGRADED. `coloured` (for a terminal): a FAIL row is red, a DEGRADED
-/// row yellow. `mean`: the kind of mean in the rows. Empty without rows.
+/// row yellow. `mean`: harmonic or arithmetic, the kind of mean in the rows. Empty without rows.
 ///
 /// Rows of a protocol with factors have other columns: their levels and the requested timing profile instead
 /// of scene, n_*, method and effects. At the end come the realised 99th percentile of the frame intervals,

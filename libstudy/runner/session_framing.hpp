@@ -34,7 +34,7 @@ struct FramedScene {
 
 /// Viewing with the visual angle of pictures on a screen of this width at this distance; without both, the
 /// visual angle is unknown. base::Error if only one of width and distance is given, if one is out of range,
-/// or if true_angle is set without them.
+/// or if true_angle (the camera uses the visual angle) is set without them.
 Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> distance_mm, bool true_angle);
 
 /// The scenes of a protocol in the order of its cells, shown live or from `bakes`. renderer: name of the

@@ -9,8 +9,9 @@
 
 namespace study {
 
-/// A setting applies to every cell with its method and n_* (number of particles), in all scenes, so that a
-/// method has the same setting in all scenes of a study. Other cells use the default setting.
+/// A setting applies to every cell with its method and n_* (number of particles if all are coarsest), in all
+/// scenes, so that a method has the same setting in all scenes of a study. Other cells use the default
+/// setting.
 class SessionSettings {
  public:
   SessionSettings() = default;

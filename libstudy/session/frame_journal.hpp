@@ -1,6 +1,6 @@
 #pragma once
-/// Buffers the frames, the gaze samples and the headset's frame slots of a running trial, so that the
-/// session's thread need not write them to the disk between two frames.
+/// Buffers the frames, the gaze samples and the headset's slots (its display periods) of a running trial, so
+/// that the session's thread need not write them to the disk between two frames.
 
 #include <atomic>
 #include <condition_variable>

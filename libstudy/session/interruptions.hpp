@@ -6,8 +6,10 @@
 
 namespace study {
 
-/// Applies Block::on_interruption to the trial that was begun but not done, if there is one. Call it before
-/// the session continues. True if the store was changed: then read the open units again.
+/// Applies Block::on_interruption to the trial that was begun but not done, if there is one: the trial stays
+/// open and is shown again (Resume), all begun trials of its block are shown again (RestartBlock), or the
+/// trial is excluded (Invalidate). Call it before the session continues. True if the store was changed: then
+/// read the open units again.
 bool settle_interruption(Store& store, const Protocol& protocol, const OpenSession& session);
 
 }  // namespace study

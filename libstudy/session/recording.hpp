@@ -1,6 +1,6 @@
 #pragma once
-/// Records a presentation: the headset's frame slots (SlotRecord), and gaze and head poses if the participant
-/// allows gaze recording.
+/// Records a presentation: the headset's slots (SlotRecord: one display period), and gaze and head poses if
+/// the participant allows gaze recording.
 
 #include <cstdint>
 #include <optional>

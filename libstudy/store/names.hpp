@@ -10,8 +10,8 @@
 
 namespace study {
 
-/// Event kinds: the experimenter revealed the setting of a trial, or opened the mirror with its stimuli
-/// visible. The experimenter is then no longer blind to the session.
+/// Event kinds: the experimenter revealed the setting of a trial, or opened the mirror (the experimenter's
+/// second window) with stimuli visible. The experimenter is then no longer blind to the session.
 inline constexpr const char* revealed_event = "setting revealed";
 inline constexpr const char* mirror_event = "mirror opened";
 /// Event kind: the mirror showed pages but no stimulus, so the experimenter stayed blind to the session.

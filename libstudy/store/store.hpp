@@ -116,7 +116,8 @@ struct Ending {
   std::string reason;  ///< words for a note; may be empty
 };
 
-/// A display slot of a headset, with the index of the frame shown in it; none: the display was black.
+/// A slot (display period) of a headset, with the index of the frame shown in it; none: the display was
+/// black.
 struct ShownSlot {
   SlotRecord slot;
   std::optional<std::int64_t> frame;

@@ -38,7 +38,7 @@ struct FactorColumn {
 std::vector<FactorColumn> factor_columns(sqlite::Connection& database, const std::string& condition,
                                          std::set<std::string> taken);
 
-/// The columns of the table of ratings, with the sessions that the SQL condition selects. If a protocol of
+/// The columns of the table of ratings for the sessions that the SQL condition selects. If a protocol of
 /// these sessions has factors, also the columns of their levels, the timing profile, p99_ms, hitches and
 /// animation_error_ms.
 std::vector<RatingColumn> rating_columns(sqlite::Connection& database, const std::string& condition = "1");

@@ -54,9 +54,10 @@ struct Merge {
 /// Adds the data of the databases `sources` to the database `into`.
 ///
 /// Sessions under equal protocol hashes form one dataset. Of several copies of a session, only the copy with
-/// the most progress is used; base::Error if two copies diverged. If several people have the same code, each
-/// gets the code "<code>-<station>". If there is no station, or this code is too long or not distinct, the
-/// person gets "<code>-<four hexadecimal digits>".
+/// the most progress is used; base::Error if two copies diverged (apart from permission changes, neither
+/// log of events begins with the other), or if a person has two sessions with the same protocol and visit
+/// number. If several people have the same code, each gets the code "<code>-<station>". If there is no
+/// station, or this code is too long or not distinct, the person gets "<code>-<four hexadecimal digits>".
 ///
 /// A person who withdrew in one database is deleted from the result and from backups and personal data beside
 /// `into`, and registered exports with the person are deleted (delete_exports_of_withdrawn()). Personal data

@@ -42,11 +42,12 @@ struct Content {
 void add_source(Content& content, std::unique_ptr<sqlite::Connection> source);
 
 /// The copy with the most progress of each session whose person did not withdraw, in the order of planning.
-/// base::Error if two copies of a session diverged.
+/// base::Error if two copies of a session diverged (apart from permission changes, neither log of events
+/// begins with the other), or if a person has two sessions with the same protocol and visit number.
 std::vector<SessionCopy> choose_sessions(Content& content);
 
 /// The code of each person after the merge, by person; all codes are distinct. The codes do not depend on the
-/// order of the sources.
+/// order of the sources. base::Error if a code cannot be made distinct.
 std::map<std::string, std::string> name_people(const Content& content);
 
 /// Reasons why stations may have assigned the same slots (positions in the counterbalancing, of which each

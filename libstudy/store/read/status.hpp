@@ -85,8 +85,8 @@ struct CertificateRow {
   std::optional<double> animation_error_ms;
 };
 
-/// Certificate rows of all sessions of run `run_id`. mean: the kind of mean frame rate that the protocol's
-/// settings use.
+/// Certificate rows of all sessions of run `run_id`. mean: harmonic or arithmetic, the mean frame rate that
+/// the protocol's settings use.
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& database, std::int64_t run_id,
                                              FpsMean mean);
 /// Certificate rows of all sessions under protocol `protocol_id`.
