@@ -6,8 +6,8 @@ class App;
 
 namespace apps {
 
-/// vip-bench accuracy: error and milliseconds per frame of each solver setting, and the effect of each number
-/// of the solver.
+/// vip-bench accuracy: error and milliseconds per frame of each solver setting, and the effect of each
+/// parameter of the solver.
 void add_accuracy_command(CLI::App& app);
 
 /// vip-bench effects: milliseconds per frame that each effect of a scene costs.
@@ -22,7 +22,8 @@ void add_growth_command(CLI::App& app);
 /// vip-bench headset: milliseconds of each stage of a frame, for live fluid in a headset.
 void add_headset_command(CLI::App& app);
 
-/// vip-bench stability: how far the numbers of each hard case can change before the case fails.
+/// vip-bench stability: how far the frame step, the iterations and the own quantity (such as a speed) of each
+/// hard case, a scene that strains the solver, can change before the case fails.
 void add_stability_command(CLI::App& app);
 
 /// vip-bench table1: the paper's Table 1, image quality of the methods' pictures with those of HiRes as

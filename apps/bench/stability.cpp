@@ -1,4 +1,5 @@
-/// vip-bench stability: how far the numbers of each hard case can change before the case fails.
+/// vip-bench stability: how far the frame step, the iterations and the own quantity (such as a speed) of each
+/// hard case, a scene that strains the solver, can change before the case fails.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

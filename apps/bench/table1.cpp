@@ -116,8 +116,9 @@ Plan plan_of(const measure::Table1Options& options) {
   return out;
 }
 
-/// For each scene and size, writes the output files after the pictures and again after the frames of
-/// SSIM-cumul and flicker, so that an interrupted run has stored the finished parts.
+/// For each scene and size, writes the output files after the still pictures, and again after the runs that
+/// compare the methods frame by frame (SSIM-cumul and flicker), so that an interrupted run has stored the
+/// finished parts.
 void run_table1(const measure::Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},

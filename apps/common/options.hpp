@@ -20,7 +20,8 @@ CLI::Option* add_database(CLI::App& command, std::string& database);
 /// Adds the database of vip-stats, as a positional argument or as --db. The command must then call
 /// check_given().
 void add_database_argument(CLI::App& command, std::string& database);
-/// Adds --incomplete, an option of the commands that read a study (study::StudyFile).
+/// Adds --incomplete: a command that reads a study goes on although the journal of answers beside the
+/// database holds more than the database (study::StudyFile).
 void add_incomplete(CLI::App& command, bool& incomplete);
 /// Throws CLI::RequiredError if add_database_argument() got no database.
 void check_given(const std::string& database);

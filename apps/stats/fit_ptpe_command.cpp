@@ -46,7 +46,8 @@ struct FitCommand {
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const study::PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
-  /// True if the fit has any doubt that --force overrules: any doubt except form_rejected.
+  /// True if the fit has any doubt that --force overrules: any except form_rejected (the data reject an
+  /// exponential), which --accept-form overrules.
   bool doubted(const study::PilotFit& fit) const {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code != stats::form_rejected; });

@@ -99,8 +99,9 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    // In Task 2 the world "margin" equals "null". In Task 1 the differences of "margin" fit only the shipped
-    // hypotheses. So "margin" is omitted in Task 2 and for plans with claims of their own.
+    // A world is a truth that simulated studies assume. In Task 2 the world "margin" equals "null". In Task 1
+    // the differences of "margin" fit only the shipped hypotheses. So "margin" is omitted in Task 2 and for
+    // plans with claims of their own.
     if (kind == study::PowerKind::Task2 || !request.plan.plan.claims.empty())
       std::erase(request.worlds, "margin");
     if (!request.protocol.design.effects.empty())
@@ -111,7 +112,7 @@ void complete(PowerCommand& command, const CLI::App& options) {
   for (const auto& one : request.worlds) {
     if (std::find(unique.begin(), unique.end(), one) == unique.end()) unique.push_back(one);
   }
-  // --effect or --difference adds the world "effect".
+  // --effect or --difference adds the world "effect", the assumed truth that these options describe.
   if ((request.effect || request.difference) &&
       std::find(unique.begin(), unique.end(), "effect") == unique.end())
     unique.insert(unique.begin(), "effect");

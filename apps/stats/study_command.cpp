@@ -112,7 +112,8 @@ void print_summary(const study::Json& json) {
 
 void run_study(const StudyCommand& command) {
   check_apart(command.database, {{"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}});
-  // The register of output files is opened before the data are read, and only if a file is to be written.
+  // The database registers files with people's data, because a withdrawal must delete them. The register is
+  // opened before the data are read, and only if a file is to be written.
   std::optional<study::RegisteredFiles> files;
   if (!command.csv.empty() || !command.json.empty() || !command.html.empty()) files.emplace(command.file());
   const study::Json json = results_of_study(command);

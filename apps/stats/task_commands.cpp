@@ -204,7 +204,8 @@ void run(const TaskCommand& command) {
   request.level = command.choice.level;
   request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
-  // The register of output files is opened before the data are read, and only if a file is to be written.
+  // The database registers files with people's data, because a withdrawal must delete them. The register is
+  // opened before the data are read, and only if a file is to be written.
   std::optional<study::RegisteredFiles> files;
   if (!command.json.empty() || !command.csv.empty())
     files.emplace(study::StudyFile(command.database, command.incomplete));

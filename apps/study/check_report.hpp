@@ -31,9 +31,10 @@ const char* timing_name(const study::Design& design);
 /// and personal questions.
 std::vector<std::string> questions_by_cell(const study::Protocol& protocol);
 /// Levels that an adaptive procedure may choose, as indices into the levels of its factor: the levels of all
-/// cells but the standard.
+/// cells but the standard's, with which pairs compare the others.
 std::vector<std::size_t> candidate_levels(const study::Design& design);
-/// Number of tracks of an adaptive procedure in a session.
+/// Number of tracks in a session. A track is one run of an adaptive procedure, with its own sequence of
+/// levels.
 int tracks_of(const study::Design& design);
 /// Longest time, s, that a showing may run past its planned end before it is cut; equal for all showings,
 /// because all showings of a protocol have the same planned duration.

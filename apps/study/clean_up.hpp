@@ -15,7 +15,8 @@ void print_list(const char* title, const std::vector<std::string>& lines);
 /// Prints `lacking`, the description of the data that an incomplete study lacks; nothing if empty.
 void print_lacking(const std::filesystem::path& database, const std::string& lacking);
 
-/// Prints which files were cleaned or deleted, and which are still left.
+/// Prints from which files the clean-up removed a person's data, which files it deleted, and which clean-ups
+/// failed and why.
 void print_clean_up(const study::CleanUp& done);
 
 /// Deletes the data of a participant and prints what was deleted. base::Error if something could not be

@@ -45,7 +45,8 @@ const study::FramedScene& framed(int cell, const MeasuringPlace& place) {
   for (const study::FramedScene& scene : place.scenes) {
     if (std::find(scene.cells.begin(), scene.cells.end(), cell) != scene.cells.end()) return scene;
   }
-  throw std::logic_error("measure_live: a scene that was not framed");
+  throw std::logic_error(
+      "measure_live(): the scene of a cell is not in MeasuringPlace::scenes; frame all scenes first");
 }
 
 /// Size and angles with which the display shows a cell; for a headset, the display's description.

@@ -15,8 +15,8 @@ namespace apps {
 /// Returns an empty text if there is no problem.
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built);
 
-/// Prints clock_problem() and place_problems() on stderr and returns these warnings, which do not prevent the
-/// session. Call before anything of the session is written.
+/// Prints clock_problem() and place_problems() (of the database's location) on stderr and returns these
+/// warnings, which do not prevent the session. Call before anything of the session is written.
 std::vector<std::string> warn_of_station(study::Store& store, const std::filesystem::path& database);
 
 /// Logs the warnings of warn_of_station() in each session. With a window, also logs and prints the facts of

@@ -1,5 +1,6 @@
 #pragma once
-/// Files that cache the step times measured on a station, so that a later session need not measure again.
+/// Files that cache step times (the times to compute and to draw each content step of a stimulus) measured on
+/// a station, so that a later session need not measure again.
 
 #include <filesystem>
 #include <optional>

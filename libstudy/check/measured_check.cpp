@@ -16,7 +16,9 @@ namespace {
 /// A cell reaches the display's refresh rate if its mean frame rate is at least this fraction of that rate.
 constexpr double at_refresh = 0.98;
 
-/// Smallest tolerance tau of the paper's model over all windows of up to 30 frame intervals, frames/s.
+/// Smallest tolerance tau over all windows of up to 30 frame intervals, frames/s, with the paper's model
+/// tau = mean - a exp(b sd) of a window's frame rates. A method with temporal acceleration accelerates where
+/// tau < 0.
 double least_tau(const std::vector<double>& intervals_s) {
   stats::FpsWindow window;
   double least = HUGE_VAL;

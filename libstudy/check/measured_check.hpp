@@ -23,9 +23,10 @@ struct MeasuredCell {
   stats::FpsMoments fps;  ///< frame rate; each frame counts as at least one refresh period long
   double mean_ms = 0;     ///< mean time to compute and draw a frame, without waiting
   double p95_ms = 0;      ///< 95th percentile of the time to compute and draw a frame, without waiting
-  double tau_min = 0;     ///< smallest ptpe_tolerance() over windows of up to 30 frames, frames/s
+  /// Smallest ptpe_tolerance() over windows of up to 30 frames, frames/s; < 0: acceleration is needed.
+  double tau_min = 0;
   double showing_s = 0;   ///< expected duration of a showing of the cell, s
-  bool too_slow = false;  ///< the machine is too slow for the cell; see judge_measured()
+  bool too_slow = false;  ///< the machine misses the frame rate or timing; see judge_measured()
   std::string words;      ///< why the cell is too slow or its showings would be degraded; empty if neither
 };
 
@@ -48,10 +49,10 @@ using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 /// the machine's mean frame rate is below the protocol's fps_min. A cell with a showing of one frame is not
 /// judged.
 ///
-/// MeasuredReport::collapse is set only under Native on a display with a fixed refresh, for one of two
-/// reasons. First: all cells reach 98 % of the refresh rate, and do not have one method with several levels
-/// of effects. Second: the design has accelerated methods, but tau never falls below zero in their cells, so
-/// that these methods never accelerate.
+/// MeasuredReport::collapse is set only under Native (each frame is shown when ready) on a display with a
+/// fixed refresh, for one of two reasons. First: all cells reach 98 % of the refresh rate, and do not have
+/// one method with several levels of effects. Second: the design has accelerated methods, but tau never falls
+/// below zero in their cells, so that these methods never accelerate.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 

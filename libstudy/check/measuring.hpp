@@ -18,8 +18,9 @@ double longest_measuring_s(const Protocol& protocol, const MeasuredStimulus& wha
 /// Ends after the last step of the longest trial of `cells`. After 5 s, it also ends once it is behind the
 /// schedules of all cells whose trials have steps left. A cell without a frame rate counts as behind once its
 /// duration is over. Being behind does not count in the first 5 s, so that more is measured than the first
-/// steps of a fluid, which are the fastest. refresh_hz: as for content_steps(). `each` (may be empty) is
-/// called after every step.
+/// steps of a fluid, which are the fastest. refresh_hz: refresh rate of the display, Hz (0: none), by
+/// which content_steps() counts the steps of a cell without a frame rate. `each` (may be empty) is called
+/// after every step.
 StepTimes measure(const Protocol& protocol, const std::vector<int>& cells, Stimulus& stimulus,
                   Display& display, Clock& clock, double refresh_hz, const std::function<void()>& each);
 

@@ -14,7 +14,8 @@ struct CheckedSetting {
   std::vector<int> cells;  ///< indices into Design::cells, ascending
 };
 
-/// The distinct settings of a protocol, in the order of their first cells; none under TimingSource::Native.
+/// The distinct settings of a protocol, in the order of their first cells; none under TimingSource::Native,
+/// which shows each frame when it is ready.
 std::vector<CheckedSetting> checked_settings(const Protocol& protocol);
 
 /// The result of check_refresh(): how well a display with one refresh rate shows a protocol's settings.

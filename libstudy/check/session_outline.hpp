@@ -43,12 +43,12 @@ SessionOutline outline_session(const Protocol& protocol);
 /// One line about a block: "10 trials: stimulus 30 s, ask 5, rest 30 s".
 std::string describe_block(const Protocol& protocol, const BlockOutline& outline);
 
-/// How evenly the assignment spreads the sequences of cell groups (groups_met()) over the planned
-/// participants.
+/// How evenly the assignment spreads sequences over the planned participants. A sequence: the groups of cells
+/// that a participant sees, in order of presentation (groups_met()).
 struct PlannedBalance {
   int planned = 0;
   int sequences = 1;        ///< number of sequences; 1: groups are not balanced between participants
-  int least = 0, most = 0;  ///< fewest and most people per sequence; 0 under PaperRandom
+  int least = 0, most = 0;  ///< fewest and most people per sequence; 0 if drawn at random (PaperRandom)
   /// Largest difference, over all pairs (A, B) of each sequence, between the number of people who see A first
   /// and the number of people who see B first.
   int interval_difference = 0;

@@ -22,8 +22,8 @@ bool same_track(const Design& design, const Cell& a, const Cell& b) {
   return true;
 }
 
-/// Cells of the track of `cell` as indices into Design::cells, by ascending level of the adaptive factor. The
-/// standard's cell is left out.
+/// Cells of the track of `cell` as indices into Design::cells, by ascending level of the adaptive factor.
+/// Leaves out the cell of the standard, the stimulus with which the pairs compare the others.
 std::vector<int> track_cells(const Design& design, const Cell& cell) {
   std::vector<int> out;
   for (int i = 0; i < static_cast<int>(design.cells.size()); ++i) {
@@ -51,7 +51,8 @@ bool is_positive(const Protocol& protocol, const TrackAnswer& answer) {
   return (chose_first != first_is_standard) == procedure.comparison;
 }
 
-/// One answer in a track. place: index of the answered cell in track_cells().
+/// One answer in a track (a run of the adaptive procedure). place: index of the answered cell among the
+/// track's cells, which ascend by level of the adaptive factor (track_cells()).
 struct TrackStep {
   int place = 0;
   bool positive = false;

@@ -19,10 +19,11 @@ struct TrackAnswer {
   int score = 0;              ///< answer to Procedure::question
 };
 
-/// The trials of one group of cells in random order, with the planned number of trials for each track. Each
-/// trial has the first cell of its track as a placeholder, which chosen_trial() replaces before the trial is
-/// shown. In a design with pairs, each trial also has the standard; every second trial of a track shows the
-/// standard first.
+/// The trials of one group of cells in random order, with the planned number of trials for each track. group:
+/// the cells that one participant sees, as indices into Design::cells. Each trial has the first cell of its
+/// track as a placeholder, which chosen_trial() replaces before the trial is shown. In a design with pairs,
+/// each trial also has the standard, the stimulus with which all others are compared; every second trial of a
+/// track shows the standard first.
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 
@@ -32,9 +33,9 @@ std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<i
 PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
                           std::span<const TrackAnswer> answers);
 
-/// The cell that identifies the track of `cell`: the track's cell, other than the standard, with the lowest
-/// level of the adaptive factor. Returns `cell` itself if the track has only the standard. The design must
-/// have a procedure.
+/// The cell that identifies the track of `cell`: the track's cell, other than the standard of a
+/// design with pairs, with the lowest level of the adaptive factor. Returns `cell` itself if the track has
+/// only the standard. The design must have a procedure.
 int first_of_track(const Design& design, int cell);
 
 /// A threshold estimated from the answers of one track of a staircase or of QUEST+.

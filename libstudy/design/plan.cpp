@@ -12,7 +12,8 @@ namespace study {
 
 namespace {
 
-/// The groups and the row of the square (Latin or Williams) that the assignment deals to a slot.
+/// What the assignment deals to a slot (a place in the assignment, which one participant takes): the groups
+/// of cells to show, and the row of the square (Latin or Williams) that orders their trials.
 struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
   int round = 0;            ///< number of complete passes through all sequences before this slot
@@ -32,7 +33,8 @@ const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& gr
   return design.cells[static_cast<std::size_t>(group.front())].stimulus;
 }
 
-/// How often the most frequent n_* occurs in a sequence minus how often the least frequent one does.
+/// Of all n_* (sizes of the fluid) in `groups`: how often the most frequent one occurs in a sequence of
+/// groups minus how often the least frequent one does, perhaps 0 times.
 int unevenness(const Design& design, const std::vector<std::vector<int>>& groups,
                const std::vector<int>& sequence) {
   std::map<std::string, int> count;
@@ -89,7 +91,7 @@ int rows_of(const Design& design) {
   return rows;
 }
 
-/// Number of passes through all sequences before the assignment starts over.
+/// Number of passes through all sequences of groups before the assignment starts over.
 int rounds_of(const Design& design) {
   const bool couples = design.pairs && design.assignment == Assignment::Balanced;
   return couples ? std::lcm(2 * rows_of(design), rounds_of_intervals) : rows_of(design);
@@ -99,7 +101,9 @@ std::vector<std::vector<int>> dealt_sequences(const Design& design) {
   return sequences_of(design, design.assignment == Assignment::Balanced);
 }
 
-/// The Deal of a slot; slot >= 0. Under Assignment::PaperRandom the groups are drawn with `key` instead.
+/// The sequence of groups, the round and the row of the square for a slot; slot >= 0. Under
+/// Assignment::PaperRandom the sequence is drawn at random with `key`, the participant's random key, and the
+/// slot is round and row. Otherwise all follow from the slot and the protocol's hash, and `key` is not used.
 Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   const Design& design = protocol.design;
   const auto all = dealt_sequences(design);
@@ -116,7 +120,7 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   shuffle(order, random);
   const int sequence = order[static_cast<std::size_t>(slot % count)];
   // With pairs, two successive rounds (a couple) use the same rows, so each row occurs in both interval
-  // orders.
+  // orders (which stimulus of a pair comes first).
   return {all[static_cast<std::size_t>(sequence)], round, sequence + (design.pairs ? round / 2 : round)};
 }
 
@@ -272,8 +276,9 @@ class Planner {
   }
 
   /// True if trial number `pair` of group g, counted over all repetitions, shows the second cell of its pair
-  /// first. The choice is random but equal for all participants of a round; the second round of a couple has
-  /// the opposite choice. Under Assignment::PaperRandom the choice is drawn for each participant.
+  /// first. The choice is random but equal for all participants of a round (a pass of the assignment through
+  /// all sequences of groups); each odd round, counted from 0, has the opposite choices of the round before.
+  /// Under Assignment::PaperRandom the choice is drawn for each participant.
   bool mirrored(int g, int pair) const {
     const auto which = static_cast<std::uint64_t>(g) * counters_per_group + static_cast<std::uint64_t>(pair);
     if (design_.assignment == Assignment::PaperRandom)
@@ -317,7 +322,8 @@ class Planner {
     add_drawn(candidates, block(index).count, index, random);
   }
 
-  /// Adds trials drawn at random from those of block `like`, with the same stimuli and frame intervals.
+  /// Adds repeats of trials drawn at random from the block that the key `like` of this block names, with the
+  /// stimuli and frame intervals of the drawn trials.
   void add_repeats(int index) {
     auto random = extra(index);
     std::vector<PlannedTrial> shown;
@@ -340,7 +346,8 @@ class Planner {
     }
   }
 
-  /// Puts each catch page after a different trial, drawn at random from the trials of block `like`.
+  /// Puts each catch page after a different trial, drawn at random from the trials of the block that the key
+  /// `like` of the page's block names.
   void scatter_catches() {
     for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
       const Block& catches = protocol_.blocks[index];

@@ -36,8 +36,9 @@ struct Plan {
   std::vector<PlannedTrial> trials;  ///< in the order of their positions
 };
 
-/// Number of group sequences that the assignment deals to participants in turn. They are all sequences of
-/// groups with different scenes that spread n_* as evenly as possible. 1 under Assignment::PaperRandom.
+/// Number of sequences of cell groups that the assignment deals to participants in turn. They are all
+/// sequences of groups with different scenes that spread n_* (the size of the fluid) as evenly as possible.
+/// 1 under Assignment::PaperRandom, which draws a sequence at random for each participant.
 int sequence_count(const Protocol& protocol);
 
 /// Number of slots before the assignment starts over: number of group sequences x number of rounds through
@@ -51,7 +52,8 @@ int slot_count(const Protocol& protocol);
 int next_slot(const Protocol& protocol, const std::vector<int>& taken);
 
 /// The groups of cells that a participant in this slot sees, in order of presentation, as indices into
-/// cell_groups(). Under Assignment::PaperRandom the groups are drawn with `key`, and the slot has no effect.
+/// cell_groups(). Under Assignment::PaperRandom the groups are drawn with `key`, the participant's random
+/// key, and the slot has no effect.
 std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key);
 
 /// Plans a whole session. A trial's schedule_seed depends on its cells, its block and the number of its

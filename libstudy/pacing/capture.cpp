@@ -23,7 +23,7 @@ namespace study {
 namespace {
 
 constexpr std::size_t most_capture_bytes = 1 << 28;
-constexpr double slow_share = 0.05;  // share of the frames that count in a "5 % low"
+constexpr double slow_share = 0.05;  // share of the frames, the slowest: their mean rate is the "5 % low"
 
 std::string folded_name(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -1,5 +1,5 @@
 #pragma once
-/// Frame times from the capture of a running program, for timing profiles of kind Trace.
+/// Frame times from the capture (recording) of a running program, for timing profiles that replay them.
 
 #include <filesystem>
 #include <optional>

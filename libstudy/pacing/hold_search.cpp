@@ -9,8 +9,8 @@ namespace study {
 
 namespace {
 
-/// A list of holds, stored for each k as the number of frames held at most k periods, with the sums from
-/// which mean() and sd() follow.
+/// A list of holds. The hold of a frame is the number of refresh periods for which it is shown. Stored is,
+/// for each k, the number of frames held at most k periods, with the sums from which mean() and sd() follow.
 class Holds {
  public:
   explicit Holds(const HoldTarget& target)
@@ -25,6 +25,7 @@ class Holds {
   int edges() const { return static_cast<int>(counts_.size()) - 1; }
   std::int64_t total() const { return total_; }
   double rate(int edge) const { return target_.refresh_hz / (target_.shortest + edge); }
+  /// Sum over all frames of the squared difference between rate and target rate, (frames/s)^2.
   double distance2() const { return static_cast<double>(distance2_); }
 
   double mean() const {
@@ -50,8 +51,8 @@ class Holds {
     return by > 0 ? counts_[at] < counts_[at + 1] : counts_[at] > (edge ? counts_[at - 1] : 0);
   }
 
-  /// Moves one frame across an edge (see edges()): by = 1 shortens the hold of the frame by a period, by = -1
-  /// lengthens it.
+  /// Changes the hold of one frame by a period. For by = 1 it shortens a hold of shortest + edge + 1 periods;
+  /// for by = -1 it lengthens a hold of shortest + edge periods.
   void move(int edge, int by) {
     auto& count = counts_[static_cast<std::size_t>(edge)];
     const long double fast = rate(edge), slow = rate(edge + 1);
@@ -123,7 +124,8 @@ void place(Holds& holds, const HoldTarget& target, double spread, double price) 
   holds.recount_for_mean();
 }
 
-/// Bisects `price` of place() 60 times towards the target mean; a higher price shortens holds.
+/// Bisects `price`, the weight of the mean in the sum that place() minimises, 60 times towards the target
+/// mean; a higher price shortens holds.
 void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   double low = -1, high = 1;
   const auto mean_at = [&](double price) {
@@ -140,8 +142,8 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   holds.recount();
 }
 
-/// Bisects `spread` of place() up to 40 times, until the standard deviation is within its tolerance of the
-/// target.
+/// Bisects `spread`, the weight of the squared deviations from the target mean in the sum that place()
+/// minimises, up to 40 times, until the standard deviation is within its tolerance of the target.
 void place_with_moments(Holds& holds, const HoldTarget& target) {
   const auto sd_at = [&](double log_weight) {
     place_with_mean(holds, target, std::exp(log_weight) - 1);
@@ -157,8 +159,8 @@ void place_with_moments(Holds& holds, const HoldTarget& target) {
   }
 }
 
-/// Changes the holds of single frames by one period until all holds sum to `total` periods; each step takes
-/// the change that raises the objective (distance2()) least.
+/// Changes the holds of single frames by one period until all holds sum to `total` periods. Each step takes
+/// the change that raises distance2(), the squared distance from the target rates, least.
 void fix_total(Holds& holds, std::int64_t total) {
   while (holds.total() != total) {
     const int by = holds.total() > total ? 1 : -1;
@@ -177,8 +179,8 @@ void fix_total(Holds& holds, std::int64_t total) {
   }
 }
 
-/// Quality of a list: first the excess of its moments over their tolerances, with a weight for the mean's
-/// error, then the objective.
+/// Quality of a list, smaller is better: first the errors of mean and standard deviation beyond their
+/// tolerances, that of the mean times mean_weight; then the squared distance from the target rates.
 struct Score {
   double mean_weight, excess, distance2;
   Score(const Holds& holds, double weight)
@@ -233,7 +235,9 @@ bool adjust(Holds& holds, Score& score) {
   return moved;
 }
 
-/// Changes the holds by single periods as long as this improves their score. `mean_weight`: see Score.
+/// Changes the holds by single periods as long as this improves their Score, in which `mean_weight`
+/// multiplies the error of the mean. total > 0: first brings the sum of the holds to `total` periods and then
+/// keeps it; 0: any sum.
 void descend(Holds& holds, std::int64_t total, double mean_weight = 1) {
   if (total > 0) fix_total(holds, total);
   Score score(holds, mean_weight);
@@ -251,8 +255,9 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
 }
 
 /// Calls descend() on every list of two different holds, one at most and one at least as long as the mean
-/// hold, because such lists have the extreme standard deviations. Stops once the excess is 0. Returns the
-/// list with the least excess of these and of `best`.
+/// hold, because such lists have the extreme standard deviations. Stops at a list with an excess of 0, whose
+/// mean and standard deviation are within their tolerances. Returns the list with the least excess of these
+/// and of `best`.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);
@@ -319,8 +324,8 @@ void for_each_pair(const HoldTarget& target, const std::function<void(double, do
   }
 }
 
-/// Largest mean of (rate - c)^2 over the pairs of for_each_pair(), (frames/s)^2. For every c it is an upper
-/// bound of the variance.
+/// Largest mean of (rate - c)^2 over the pairs of for_each_pair(), (frames/s)^2. No list of holds
+/// with the target mean has a larger variance, whatever c is.
 double largest_square(const HoldTarget& target, double c) {
   double largest = 0;
   for_each_pair(target, [&](double fast, double slow, double weight) {

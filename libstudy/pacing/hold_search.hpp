@@ -38,10 +38,12 @@ struct HoldList {
   double excess = 0;
 };
 
-/// The best list found whose holds sum to `total` periods (this fixes a harmonic mean); total = 0: any sum.
-/// If the best list has another sum, its excess is infinite. Deterministic: Lagrange multipliers for both
-/// moments, then exchanges of single periods between frames. Excess 0 proves that the target can be met.
-/// Excess > 0 does not prove that the target cannot be met; sd_bounds() may prove it.
+/// Searches for a list with excess 0 and a small objective. total: number of periods to which the holds sum
+/// (this fixes a harmonic mean); 0: any sum. If no list with excess 0 is found, returns the list with the
+/// least excess, for total = 0 that with the least error of the mean; an excess is infinite if the sum is not
+/// `total`. Deterministic: Lagrange multipliers for both moments, then exchanges of single periods between
+/// frames. Excess 0 proves that the target can be met. Excess > 0 does not prove that the target cannot be
+/// met; sd_bounds() may prove it.
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
 /// Bounds of the standard deviation, frames/s, of every list of any length with exactly the target's mean and

@@ -42,7 +42,9 @@ struct FrameRecord {
   std::int64_t content_step = 0;
   std::int64_t scheduled_ns = 0;
   PresentTimes times;
-  bool late = false;  ///< placed_ns() exceeds scheduled_ns by more than the protocol's bound
+  /// True: the frame came after scheduled_ns by more than the protocol's bound. The frame's time is
+  /// placed_ns(): its predicted display time under grade C (Compositor), else the time of its submission.
+  bool late = false;
   FrameFacts facts;
 };
 
@@ -56,7 +58,7 @@ struct PlayedTrial {
 
 /// Timing bounds of a trial while it is shown.
 struct ShowingBounds {
-  std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled_ns exceeds this
+  std::int64_t late_after_ns = 0;  ///< a frame that comes more than this after scheduled_ns is late
   std::int64_t overrun_ns = 0;     ///< a frame ready later than this after the planned end cuts the trial
 };
 
@@ -121,8 +123,9 @@ struct TimingVerdict {
 };
 
 /// Intervals in seconds between the onsets of successive frames; the last interval ends at end_ns. Onsets are
-/// the actual display times if the grade is A or B and every frame has an actual display time, else
-/// placed_ns().
+/// the actual display times if the grade is A (photodiode) or B (display feedback) and every frame has an
+/// actual display time. Otherwise they are placed_ns(): under grade C (compositor) the predicted display
+/// times, else the times of submission.
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
 
 /// pass: no frame is late, and mean and standard deviation are within tolerance. fail: the trial was cut, a

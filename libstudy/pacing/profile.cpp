@@ -16,7 +16,7 @@ namespace study {
 namespace {
 
 constexpr std::array profile_words{"moments", "hitches", "floor", "trace"};
-constexpr double low_share = 0.05;  // share of the frames that count in a "5 % low"
+constexpr double low_share = 0.05;  // share of the frames, the longest: their rate is the "5 % low", low_fps
 
 [[noreturn]] void refuse(const std::string& problem) {
   throw base::Error("timing", problem, "change the numbers of this timing, or the length of the stimulus");
@@ -129,7 +129,8 @@ std::vector<double> pattern_intervals(const TimingProfile& profile, double durat
     case ProfileKind::Moments:
       break;
   }
-  throw std::invalid_argument("a mean and a standard deviation are no pattern");
+  throw std::invalid_argument(
+      "pattern_intervals(): a profile of kind Moments has no pattern; use compile_schedule() for it");
 }
 
 }  // namespace study

@@ -47,8 +47,9 @@ const char* profile_word(ProfileKind kind);
 /// equal words; a trace is named by its number of frames and the first digits of a hash.
 std::string profile_text(const TimingProfile& profile);
 
-/// The times for which frames stay on, seconds, before a display rounds them. Not for Moments. Equal seeds
-/// give equal intervals. base::Error if the numbers contradict each other, such as a floor above the mean.
+/// The times for which frames stay on, seconds, before a display rounds them. Not for ProfileKind::Moments,
+/// which compile_schedule() handles. Equal seeds give equal intervals. base::Error if the numbers contradict
+/// each other, such as a floor above the mean.
 std::vector<double> pattern_intervals(const TimingProfile& profile, double duration_s, std::uint64_t seed);
 
 }  // namespace study

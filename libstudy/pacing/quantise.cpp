@@ -19,7 +19,7 @@ constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
 constexpr double exact_interval = 0.01;  // largest change of a pattern's interval, as a share of the interval
-constexpr double whole = 1e-6;           // rounding tolerance of period counts; relative in is_whole()
+constexpr double whole = 1e-6;           // rounding tolerance, periods; in is_whole() a share of the periods
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
   HoldTarget target;
@@ -47,7 +47,8 @@ double requested_periods(const HoldTarget& target) {
 
 bool is_whole(double periods) { return std::abs(periods - std::round(periods)) <= whole * periods; }
 
-/// A list of holds that meets mean and standard deviation; its excess is > 0 if no such list was found.
+/// A list of holds (refresh periods of each frame) that meets mean and standard deviation to the tolerances
+/// of `target`; its excess is > 0 if no such list was found.
 HoldList exact_list(const HoldTarget& target) {
   if (target.mean_kind == FpsMean::Arithmetic) return search_holds(target, 0);
   const double periods = requested_periods(target);
@@ -112,7 +113,7 @@ std::string what_bounds_sd(const HoldTarget& target) {
 }
 
 /// Words that say which moments the list `best` misses, by how much, and why. `tried`: the result of
-/// exact_list(). `target` has the tolerances of an exact list.
+/// exact_list(), which searches for a list within the tolerances of `target` and found none.
 std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
   std::string words;
   if (best.holds.empty())

@@ -53,7 +53,9 @@ std::vector<std::int64_t> rounded_deadlines(const std::vector<double>& intervals
   return out;
 }
 
-/// One pass of coordinate descent, in steps of 1 ns, over all intervals; returns the error after the pass.
+/// One pass of coordinate descent over all intervals: changes an interval by 1 ns where this lowers
+/// Sums::error(), the larger of the errors of mean and standard deviation. `error`: its value before the
+/// pass; returns the value after the pass.
 double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error, const FpsSetting& setting,
                FpsMean mean) {
   for (auto& interval : intervals_ns) {

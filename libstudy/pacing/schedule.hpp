@@ -32,7 +32,7 @@ struct PacingRules {
 /// fps_max = refresh_hz, or by no upper bound if there is no fixed refresh.
 PacingRules for_display(PacingRules rules, double refresh_hz);
 
-/// Timing of one cell of the design.
+/// Frame timing of one cell (condition) of the study's design.
 struct FpsSetting {
   double mean = 0;  ///< frames/s
   double sd = 0;    ///< standard deviation of the frame rate, frames/s
@@ -47,7 +47,8 @@ struct FpsSetting {
 /// The setting of a profile. base::Error if its numbers contradict each other, such as a floor above the
 /// mean.
 FpsSetting setting_of(const TimingProfile& profile, double duration_s);
-/// True if the intervals come from a pattern instead of a mean and a standard deviation.
+/// True if the intervals come from a pattern (hitches, a floor or a trace of the profile) instead of a mean
+/// and a standard deviation.
 bool has_pattern(const FpsSetting& setting);
 /// Name of the setting in messages and tables: profile_text() of its profile or, without a profile, mean and
 /// standard deviation, such as "(50, 20)".
@@ -92,11 +93,12 @@ struct RefreshVerdict {
 /// the fixed refresh R = refresh_hz > 0.
 ///
 /// exact: the holds sum to exactly R N / mean periods, and the sd is within max(2 %, 0.25 frames/s). No hold
-/// exceeds max_interval_ms, 1 / fps_min or the longest interval of exact_rates() rounded up to a period, and
-/// no rate exceeds fps_max. An arithmetic mean need only be within 0.01 %, because sums of R / k seldom equal
-/// a given number. approximate: the mean is within 0.5 %, the sd is as near as the search comes, and the same
-/// bounds on holds apply. unreachable: neither, or exact_rates() fails. Among lists that meet mean and sd,
-/// the search aims at the list nearest to exact_rates() (hold_search.hpp). Applies for_display().
+/// exceeds max_interval_ms, 1 / fps_min or the longest interval of exact_rates() (the frame rates without a
+/// fixed refresh) rounded up to a period, and no rate exceeds fps_max. An arithmetic mean need only be within
+/// 0.01 %, because sums of R / k seldom equal a given number. approximate: the mean is within 0.5 %, the sd
+/// is as near as the search comes, and the same bounds on holds apply. unreachable: neither, or exact_rates()
+/// fails. Among lists that meet mean and sd, the search aims at the list nearest to exact_rates()
+/// (hold_search.hpp). With fps_max_is_refresh, fps_max is R.
 ///
 /// With a pattern, each deadline moves to the nearest period, but to at least one period after the deadline
 /// before; the rules are not applied. exact: no interval changed by more than 1 % of itself. approximate: the

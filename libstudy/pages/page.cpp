@@ -10,7 +10,7 @@ namespace study {
 
 namespace {
 
-/// Percent of a Vas by which a key moves the mark; 0 for other keys.
+/// Percent of the line of a Vas (visual analogue scale) by which a key moves the mark; 0 for other keys.
 int percent_of(PageKey key) {
   switch (key) {
     case PageKey::Left:
@@ -267,7 +267,8 @@ double PageState::wait_s(std::int64_t now_ns) const {
 bool PageState::can_confirm(std::int64_t now_ns) const { return missing() == 0 && wait_s(now_ns) == 0; }
 
 std::vector<TimedAnswer> PageState::answers() const {
-  if (!confirmed()) throw std::logic_error("PageState: answers before the confirmation");
+  if (!confirmed())
+    throw std::logic_error("PageState::answers(): the page is not confirmed; wait until confirmed() is true");
   std::vector<TimedAnswer> out;
   for (std::size_t i = 0; i < size(); ++i) {
     TimedAnswer timed;

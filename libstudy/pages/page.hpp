@@ -17,7 +17,7 @@ enum class PageKey { Left, Right, Up, Down, FarLeft, FarRight, Next, Previous, E
 
 /// State of the answer to one question.
 struct PageItem {
-  std::optional<int> chosen;           ///< chosen score of a listed kind or of a Reaction; none at first
+  std::optional<int> chosen;           ///< score chosen from a list, or of a Reaction; none at first
   std::optional<int> cursor;           ///< score marked by the arrow keys, or else chosen last
   std::string typed;                   ///< typed content of a Number or Text
   std::int64_t changed_ns = 0;         ///< time of the last change, without the periods of leave_out()
@@ -74,7 +74,7 @@ class PageState {
   std::size_t focus() const { return focus_; }
   /// True if the page has a Reaction.
   bool timed() const;
-  /// True if keys act on a Vas.
+  /// True if keys act on a Vas (visual analogue scale).
   bool on_line() const;
   /// True if input is ignored: in the first 300 ms (not on a page with a Reaction), in the 300 ms after
   /// leave_out(), and after the confirmation.
@@ -118,7 +118,8 @@ class PageState {
   std::optional<AnswerInput> confirmed_by_;
 };
 
-/// True if typing one digit can choose each score: the kind is listed, is no line, and has scores of 0 to 9.
+/// True if typing one digit can choose each score: the answer is chosen from a list of scores, not on a line,
+/// and the scores are 0 to 9.
 bool one_digit_does(const Question& question);
 
 }  // namespace study

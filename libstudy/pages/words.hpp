@@ -31,7 +31,7 @@ struct DeskWords {
   std::string optional;
   std::string digits, arrows, tab, line;  ///< how to answer with the keyboard
   std::string letters;  ///< how to answer yes or no with letter keys; two "{}" stand for the keys
-  std::string react, react_by_hand;  ///< how to answer a Reaction
+  std::string react, react_by_hand;  ///< how to react to a cue: with any key, and in a headset
   DeskChoice stop;
   DeskPage over, refused, not_eligible, kept, deleted, goodbye;
   DeskChoice stay_out, questionnaire, keep;

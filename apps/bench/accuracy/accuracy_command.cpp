@@ -1,4 +1,4 @@
-/// vip-bench accuracy: error and milliseconds of solver settings, and the effect of each number of the
+/// vip-bench accuracy: error and milliseconds of solver settings, and the effect of each parameter of the
 /// solver.
 
 #include <omp.h>

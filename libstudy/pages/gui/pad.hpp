@@ -9,8 +9,8 @@
 
 namespace study {
 
-/// Has digits for a Number, and letters, digits and punctuation for a Text. Arrow keys move a marker over the
-/// keys of the pad.
+/// Has digits for a question of kind Number (a typed whole number), and letters, digits and punctuation for
+/// one of kind Text. Arrow keys move a marker over the keys of the pad.
 class Pad {
  public:
   static constexpr const char* erase = "\u2190";

@@ -15,8 +15,8 @@ using study::Question;
 
 namespace {
 
-/// Farthest movement of the gaze along the line of a Vas, as a fraction of the line's length, that does not
-/// restart the dwell that sets the mark.
+/// Farthest movement of the gaze along the line of a Vas (visual analogue scale), as a fraction of the line's
+/// length, that does not restart the dwell that sets the mark.
 constexpr float dwell_reach = 0.04F;
 
 }  // namespace
@@ -118,7 +118,8 @@ void PageView::draw_anchors(const Question& question, float left, float cell) {
   ImGui::Dummy({1, 1});
 }
 
-/// Draws a Vas: a line with words below its ends, and a mark once the participant has set it.
+/// Draws a Vas (visual analogue scale): a line with words below its ends, and a mark once the participant has
+/// set it.
 void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Question& question = state.question(i);
   const auto range = static_cast<float>(question.scale_max - question.scale_min);
@@ -157,7 +158,8 @@ void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   ImGui::Dummy({1, 1});
 }
 
-/// Draws the text of a Reaction large and centred, and below it how to react.
+/// Draws the text of a Reaction, a question that a press of any key answers, large and centred, and below it
+/// the words that ask for the press.
 void PageView::draw_cue(const Question& question) {
   const ImVec2 begun = ImGui::GetCursorScreenPos();
   const float middle = begun.x + column_ / 2;

@@ -20,7 +20,7 @@ struct PageEvent {
   int digit = -1;
   bool minus = false;
   bool stop = false;       ///< true: opens the stop dialog
-  bool pressed = false;    ///< true: a key, button or trigger went down, which answers a Reaction
+  bool pressed = false;    ///< true: a key, button or trigger went down; answers a question of kind Reaction
   float lines = 0;         ///< number of lines to scroll down
   bool text_only = false;  ///< true: `lines` applies only to pages without questions
   /// Input device. While a field has the keyboard focus, a keyboard event is ignored unless it leaves the

@@ -35,7 +35,7 @@ class PageView {
   void scroll(float lines) { scroll_lines_ += lines; }
   /// True if a field has the keyboard focus: letters and Enter then go to the field.
   bool typing(const PageState& state) const;
-  /// True if the focused question is a Text, to which typed letters go.
+  /// True if the focused question is answered by typed text (AnswerKind::Text); letters then go to it.
   static bool fills_words(const PageState& state);
 
  private:
@@ -85,10 +85,10 @@ class PageView {
   float column_ = 0;  ///< width of the text column, px
   float height_ = 0;  ///< height of the last drawn content, px
   float scroll_lines_ = 0;
-  bool armed_ = false;                    ///< clicks count: the button was up while input was accepted
-  bool pointed_ = false;                  ///< the mouse moved since the page appeared
-  float mouse_x_ = -1, mouse_y_ = -1;     ///< mouse position when the page appeared
-  float looked_at_ = -1;                  ///< place on the line of a Vas where the pointer rests, 0 to 1
+  bool armed_ = false;                 ///< clicks count: the button was up while input was accepted
+  bool pointed_ = false;               ///< the mouse moved since the page appeared
+  float mouse_x_ = -1, mouse_y_ = -1;  ///< mouse position when the page appeared
+  float looked_at_ = -1;  ///< place on the line of a visual analogue scale where the pointer rests, 0 to 1
   std::size_t seen_focus_ = 0;            ///< question to which the page has scrolled
   std::size_t editing_ = ~std::size_t{};  ///< index of the Text question whose edit field is open
   std::string edited_;                    ///< content of this edit field, padded to PageState::most_bytes

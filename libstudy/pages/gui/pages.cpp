@@ -7,9 +7,10 @@ namespace study {
 
 namespace {
 
-// Longest wait for input, s. The session's check runs once in each wait.
+// Longest wait for input, s. After each wait on a page, the session's callback `check` may end the page.
 constexpr double poll_s = 0.03;
-// Longest wait on the page of a Reaction, s: short, because a gamepad is read only once in each wait.
+// Longest wait on the page of a Reaction, which measures the time to a press, s: short, because a gamepad is
+// read only once in each wait.
 constexpr double reaction_poll_s = 0.002;
 
 /// Exception that closes the stop dialog when the session ends for another reason.

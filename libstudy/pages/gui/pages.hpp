@@ -19,7 +19,8 @@
 namespace study {
 
 /// The screens of a session. All calls come from the surface's thread. `clock` is the session's clock.
-/// Surface and clock must outlive the object.
+/// Surface and clock must outlive the object. `check` of the functions below is called often while they wait;
+/// it throws to end the wait.
 class Pages {
  public:
   Pages(PageSurface& surface, const std::string& language, const Clock& clock);

@@ -82,9 +82,10 @@ class HeadsetSurface final : public PageSurface {
   std::optional<std::int64_t> away_since_ns_;
   std::optional<std::int64_t> last_ns_;  ///< predicted time of the previous slot
   HeadsetPose head_;                     ///< last known pose of the head
-  int head_world_ = 0, page_world_ = 0;  ///< HeadsetRecord::world of head_ and of page_
-  std::optional<HeadsetPage> page_;      ///< position of the shown page; none: no page
-  Place pointer_;                        ///< pointer position, px of the page
+  /// HeadsetRecord::world of head_ and of page_; it changes when the origin of poses may have moved.
+  int head_world_ = 0, page_world_ = 0;
+  std::optional<HeadsetPage> page_;  ///< position of the shown page; none: no page
+  Place pointer_;                    ///< pointer position, px of the page
   Place stick_from_;      ///< pointer position when the stick was pushed; while set, no pointer is drawn
   bool pressed_ = false;  ///< true: the pointer's button is down
   int clicks_ = 0;        ///< calls of take_look() until a click by dwell is over

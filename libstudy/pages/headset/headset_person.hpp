@@ -17,7 +17,9 @@ namespace study {
 /// The parts of a session with a person in a headset. Each part shares ownership of the pages.
 struct HeadsetPerson {
   std::unique_ptr<Participant> participant;
-  std::function<Request(const std::function<Request()>& others)> request;  ///< for SessionHooks::request
+  /// For SessionHooks::request: the request of `others`, or one to cut the trial or to end the session that
+  /// the participant or the headset causes.
+  std::function<Request(const std::function<Request()>& others)> request;
   std::function<std::optional<double>()> idle;  ///< seconds since the last input by hand or key
   std::function<void()> listen;                 ///< call it to answer with keys of the terminal from then on
 };
