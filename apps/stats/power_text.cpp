@@ -58,8 +58,8 @@ void print_hypothesis(const study::Json& hypothesis, const study::Json& settings
                 hypothesis.at("n_for_power").get<int>());
 }
 
-/// Prints the power of each single test: corrected, uncorrected and by formula. Only for a request with one
-/// number of participants.
+/// Prints the power of each single test: with Holm's correction, without it, and by formula. Only for a
+/// request with one number of participants.
 void print_tests(const study::Json& hypothesis) {
   for (const auto& test : hypothesis.at("tests")) {
     const study::Json& at = test.at("curve").at(0);

@@ -63,7 +63,7 @@ std::vector<study::RefreshCheck> check_common(const study::Protocol& protocol) {
   return checks;
 }
 
-/// Measures all live cells on a headless display, without using cached times.
+/// Measures all cells with their fluid computed live, on a headless display, without using cached times.
 study::MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report,
                                    const study::Viewing& viewing) {
   const study::Protocol& protocol = report.protocol;

@@ -17,9 +17,10 @@ struct CheckReport {
   study::Protocol protocol;
   study::SessionOutline outline;
   study::PlannedBalance balance;
-  std::vector<study::CheckedSetting> settings;  ///< all settings of the frame rate; none if native
-  std::optional<study::RefreshCheck> refresh;   ///< check at the rate of --refresh; none: no --refresh
-  std::vector<study::RefreshCheck> common;      ///< checks at the common rates; may be empty
+  /// All settings of the frame rate; none under timing = "native" (each frame is shown when ready).
+  std::vector<study::CheckedSetting> settings;
+  std::optional<study::RefreshCheck> refresh;  ///< check at the rate of --refresh; none: no --refresh
+  std::vector<study::RefreshCheck> common;     ///< checks at the common rates; may be empty
   std::optional<study::MeasuredReport> measured;
   std::vector<study::FramedScene> scenes;
 };

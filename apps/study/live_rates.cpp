@@ -26,7 +26,8 @@ const study::Cell& first_cell(const study::Protocol& protocol, const study::Meas
   return protocol.design.cells.at(static_cast<std::size_t>(one.cells.front()));
 }
 
-/// The stimuli that have live cells. MeasuredStimulus::cells contains only the live cells.
+/// The stimuli that have live cells, whose fluid is computed while it is shown. MeasuredStimulus::cells
+/// contains only the live cells.
 std::vector<study::MeasuredStimulus> live_stimuli(const study::Protocol& protocol,
                                                   const study::CellStimuli& stimuli) {
   std::vector<study::MeasuredStimulus> out;

@@ -42,7 +42,7 @@ struct RunCommand {
   std::optional<base::PictureSize> size;
 };
 
-/// The codes of --participant; for an observer without codes, P01, P02, ...
+/// The codes of --participant; for an observer (simulated participants) without codes, P01, P02, ...
 std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
   if (!command.codes.empty()) return command.codes;
   if (command.run.observer.empty())
@@ -54,8 +54,9 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
   return codes;
 }
 
-/// Sets the defaults of display, clock and gaze. A person: a window in real time. An observer: no display and
-/// the virtual clock, but real time if a window is requested. Gaze: "fixed" with a display, else "none".
+/// Sets the defaults of display, clock and gaze. A person: a window in real time. An observer (simulated
+/// participants): no display and the virtual clock, but real time if a window is requested. Gaze: "fixed"
+/// with a display, else "none".
 void choose_defaults(study::RunOptions& run) {
   const bool person = run.observer.empty();
   if (run.display.empty()) run.display = person ? "window" : "none";
@@ -199,8 +200,8 @@ void run(RunCommand& command) {
   open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
-  // The stored observer is written with the defaults of this version, because another version may have other
-  // defaults.
+  // The stored observer (simulated participant) is written with the defaults of this version, because another
+  // version may have other defaults.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty())

@@ -37,7 +37,7 @@ struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
   bool console = false;        ///< the experimenter's console in the terminal
-  bool accept_slow = false;    ///< also play live cells that are too slow here
+  bool accept_slow = false;    ///< also play cells computed live that are too slow here
   bool events = false;  ///< print a line on stdout for each begun and each committed unit, without answers
   bool mirror = false;  ///< the experimenter sees the participant's pages in a second window
   bool mirror_reveal = false;  ///< the second window also shows stimuli, which are otherwise black
@@ -48,7 +48,7 @@ struct PlayOptions {
 void open_mirror(const PlayOptions& options, const study::SessionSetup& setup);
 
 /// How the sessions of a run ended: the largest value over all sessions of people. Sessions of observers
-/// count as Done.
+/// (simulated participants) count as Done.
 enum class RunEnd {
   Done,
   TurnedAway,  ///< consent was refused, or an answer excluded the person

@@ -24,7 +24,7 @@ struct ViewOptions {
   std::string overlay = "none";             ///< values painted over the water; headless: one or several
   std::string tau = "live";                 ///< "live" or "fixed:X"
   int levels = 4;                           ///< number of levels, N
-  std::optional<double> alpha;              ///< weight of the temporal feature; none = the preset's
+  std::optional<double> alpha;              ///< temporal feature's weight in saliency; none = the preset's
   std::optional<int> iterations;            ///< solver iterations per substep; none = the scene's
   std::string camera = "view";              ///< view | overview
   std::string ptpe;                         ///< file of a fitted PTPE model; empty = none

@@ -1,5 +1,6 @@
 #pragma once
-/// Mean times of the schedule's passes for the window's panel. The code needs no window and no GL.
+/// Mean times of the passes of the schedule (the solver's steps in a frame, in order) for the window's panel.
+/// The code needs no window and no GL.
 
 #include <deque>
 #include <string>

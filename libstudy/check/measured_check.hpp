@@ -41,7 +41,8 @@ struct MeasuredReport {
 /// display.
 using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 
-/// Rehearses and judges each measured cell. refresh_hz: rate of the display; 0: frames are shown when ready.
+/// Rehearses each measured cell (plays it on a virtual clock with the measured times) and judges it.
+/// refresh_hz: rate of the display; 0: frames are shown when ready.
 ///
 /// A cell with a requested frame rate is too slow if the machine's mean frame rate without waiting is below
 /// the requested rate. The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell
@@ -60,7 +61,7 @@ MeasuredReport judge_measured(const Protocol& protocol, const std::vector<Measur
 std::string stimulus_name(const StimulusSpec& what);
 /// The report as a table in text: a heading, then one line per cell.
 std::string measured_table(const MeasuredReport& report);
-/// The frame costs of the cells that have a mean time, to be stored with a session.
+/// Mean and 95th percentile of the time per frame, for the cells that have them, to be stored with a session.
 std::vector<FrameCosts> frame_costs(const MeasuredReport& report);
 /// Expected duration of a showing on this machine, s, for each cell of the design; the planned duration if
 /// the cell was not measured.

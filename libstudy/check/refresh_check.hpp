@@ -24,7 +24,8 @@ struct RefreshCheck {
   double refresh_hz = 0;                 ///< refresh rate used for schedules: nominal_refresh(asked_hz)
   std::vector<RefreshVerdict> verdicts;  ///< one per setting, in the order of checked_settings()
   int exact = 0, approximate = 0, unreachable = 0;
-  /// Mean RefreshVerdict::distance of the reachable settings, frames/s; 0 if no setting is reachable.
+  /// Mean RefreshVerdict::distance (from the requested rates to the shown rates) of the reachable settings,
+  /// frames/s; 0 if no setting is reachable.
   double distance = 0;
 };
 

@@ -49,8 +49,8 @@ struct TrackEstimate {
 };
 
 /// Estimates threshold and shape for the track of cell `cell`, from their posterior over the grid of QUEST+,
-/// with the procedure's form, guess and lapse rates. `answers`: as for chosen_trial(). Not for
-/// ProcedureKind::Ptpe.
+/// with the procedure's form, guess and lapse rates. `answers`: all answered trials of the session's stimulus
+/// block; those of other tracks are ignored. Not for ProcedureKind::Ptpe.
 TrackEstimate estimate_track(const Protocol& protocol, int cell, std::span<const TrackAnswer> answers);
 
 }  // namespace study

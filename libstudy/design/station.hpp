@@ -1,6 +1,7 @@
 #pragma once
-/// Several stations that record one study. Each station assigns its own share of the slots and uses its own
-/// seed. If all stations record equally many people, they together use the slots as one station would.
+/// Several stations that record one study. Each station assigns to its participants its own share of the
+/// slots (the groups and orders of cells that the design balances) and uses its own seed. If all stations
+/// record equally many people, they together use the slots as one station would.
 
 #include <cstdint>
 #include <optional>

@@ -33,7 +33,7 @@ struct ContentRules {
   double animation_error_s = 0;
 };
 
-/// The rules for one setting: with the latency and the animation error of its profile.
+/// Returns `rules` with the latency and the animation error of the setting's profile, if it has a profile.
 ContentRules content_of(ContentRules rules, const FpsSetting& setting);
 
 /// One shown frame. Times are nanoseconds on the session's clock; -1 = not known.

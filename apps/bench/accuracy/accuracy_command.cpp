@@ -133,8 +133,8 @@ void run_one(const Job& job, const AccuracyOptions& options) {
   print_braked(job, cell.run.braked);
 }
 
-/// Runs the cells that `file` lacks. Stores each finished cell at once, so that an interrupted run can
-/// continue.
+/// Runs the cells (one setting with one start each) that `file` lacks. Stores each finished cell at once, so
+/// that an interrupted run can continue.
 void run_missing(const Job& job, study::SweepFile& file, const std::vector<study::SweepCell>& cells) {
   const auto done = file.keys(job.origin.machine);
   std::vector<study::SweepCell> missing;
@@ -178,7 +178,8 @@ void write_tables(const Job& job, study::SweepFile& file, const AccuracyOptions&
   if (!options.html.empty()) base::write_file_atomically(options.html, study::accuracy_page(list, job.plan));
 }
 
-/// Chooses a setting within a budget; the candidates are run again before the choice.
+/// Chooses a solver setting within a budget of time, and writes its file. The candidates are run again before
+/// the choice.
 void run_budget(const Job& job, const AccuracyOptions& options) {
   study::BudgetRequest request{job.plan, study::parse_budget(options.budget),
                                study::parse_sweep_error(options.error), job.scene.scene.tank_size_m[0]};

@@ -35,7 +35,7 @@ struct Figures {
 /// Values that the user sets in the panel.
 struct Controls {
   ViewOptions chosen;
-  double alpha = 0;    ///< weight of the temporal feature in the running fluid
+  double alpha = 0;    ///< weight of the temporal feature in the running fluid's saliency
   int iterations = 1;  ///< iterations per substep of the running fluid
   bool paused = false;
   bool step_once = false;
@@ -72,7 +72,7 @@ class Panel {
 
   std::vector<std::string> scenes_, methods_, sizes_;
   int size_ = 0;    ///< position of the n_* slider while it is dragged
-  int levels_ = 4;  ///< position of the slider of N while it is dragged
+  int levels_ = 4;  ///< position of the slider of N, the number of levels, while it is dragged
 };
 
 }  // namespace apps

@@ -86,7 +86,7 @@ class HeadsetSurface final : public PageSurface {
   int head_world_ = 0, page_world_ = 0;
   std::optional<HeadsetPage> page_;  ///< position of the shown page; none: no page
   Place pointer_;                    ///< pointer position, px of the page
-  Place stick_from_;      ///< pointer position when the stick was pushed; while set, no pointer is drawn
+  Place stick_from_;      ///< hand pointer's position when the stick was pushed; hides it while set
   bool pressed_ = false;  ///< true: the pointer's button is down
   int clicks_ = 0;        ///< calls of take_look() until a click by dwell is over
   std::size_t hand_ = 1;  ///< the hand that pointed last

@@ -24,7 +24,8 @@ struct HeadsetPerson {
   std::function<void()> listen;                 ///< call it to answer with keys of the terminal from then on
 };
 
-/// The HeadsetChoice to make the display with. base::Error if the program was built without pages.
+/// The choice of page size and, for ways.dwell, of eye tracking, with which to make the display. base::Error
+/// if the program was built without pages.
 HeadsetChoice choice_for_person(const AnswerWays& ways);
 /// Makes the parts. display and clock are those of the session and must outlive the parts.
 HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol,
