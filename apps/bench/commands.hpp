@@ -13,7 +13,7 @@ void add_accuracy_command(CLI::App& app);
 /// vip-bench effects: milliseconds per frame that each effect of a scene costs.
 void add_effects_command(CLI::App& app);
 
-/// vip-bench frame: milliseconds per frame of one scene and method, with the resulting accuracy.
+/// vip-bench frame: milliseconds per frame of one scene and method, with the density error that results.
 void add_frame_command(CLI::App& app);
 
 /// vip-bench growth: how the milliseconds of a substep grow with the number of particles.

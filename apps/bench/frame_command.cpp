@@ -1,4 +1,4 @@
-/// vip-bench frame: milliseconds per frame of one scene and method, with the resulting accuracy.
+/// vip-bench frame: milliseconds per frame of one scene and method, with the density error that results.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -38,7 +38,7 @@ struct Table2Options : measure::TableOptions {
   int frames = 300;
   int warm_up = 60;
   std::string methods = "all";  ///< "all", or names separated by commas
-  std::string ptpe;             ///< file of a fitted PTPE model; empty: the paper's model
+  std::string ptpe;             ///< file of a fitted PTPE model (a, b of tau); empty: the paper's model
   stats::PtpeModel model;
 };
 

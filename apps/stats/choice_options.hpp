@@ -1,6 +1,6 @@
 #pragma once
-/// Options and help that several commands share: the protocols and questions to analyse, and the level of a
-/// pilot's curve.
+/// Options and help that several commands share: the protocols and questions to analyse, and the level
+/// (score) at which a curve is fitted to the ratings of a pilot study.
 
 #include <CLI/CLI.hpp>
 

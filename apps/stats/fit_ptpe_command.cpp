@@ -1,4 +1,5 @@
-/// vip-stats fit-ptpe: fits the ratings of a pilot and writes the solver's file.
+/// vip-stats fit-ptpe: fits the curve mu = a exp(b delta), the just satisfactory frame rate at the standard
+/// deviation delta, to the ratings of a pilot study, and writes the file from which the solver reads a and b.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -34,8 +35,9 @@ struct FitCommand {
   std::string database, out, json, svg, truth, plan;
   std::optional<std::string> exclude;  ///< replaces the plan's rule for timing verdicts
   std::optional<std::uint64_t> seed;   ///< replaces the plan's seed
-  /// Largest half width of the curve's band, as a fraction of mu, with which the solver's file is still
-  /// written.
+  /// Largest half width of the curve's confidence band, as a fraction of mu, with which the file for the
+  /// solver
+  /// (--out) is still written.
   double max_width = 0.35;
   bool force = false;
   bool accept_form = false;
@@ -56,7 +58,8 @@ struct FitCommand {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code == stats::form_rejected; });
   }
-  /// True if a problem prevents the solver's file and no option overrules this problem.
+  /// True if a problem of the fit forbids the file for the solver (--out) and no option overrules this
+  /// problem.
   bool barred(const study::PilotFit& fit) const {
     return (!force && (too_wide(fit) || doubted(fit))) || (!accept_form && other_form(fit));
   }

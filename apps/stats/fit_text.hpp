@@ -1,5 +1,5 @@
 #pragma once
-/// Prints the fit of a pilot on the console.
+/// Prints the curve that vip-stats fit-ptpe fitted to the ratings of a pilot study, on the console.
 
 #include "libstudy/analysis/ptpe/pilot_fit.hpp"
 

@@ -1,4 +1,5 @@
-/// vip-stats: analyses a database; writes results, verdicts on hypotheses and the solver's file.
+/// vip-stats: analyses a database; writes results, verdicts on hypotheses and the file of fitted constants
+/// that the solver reads.
 
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"

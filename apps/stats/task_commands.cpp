@@ -1,4 +1,5 @@
-/// vip-stats task1 and task2: print tables, tests and verdicts of a task.
+/// vip-stats task1 (ratings of realism and cybersickness) and task2 (which of two methods is preferred):
+/// print tables, tests and verdicts on the hypotheses.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

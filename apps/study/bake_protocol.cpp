@@ -19,10 +19,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Largest size of a stored particle, bytes: three coordinates of 16 bits, if compression does not help.
+/// Largest size of a particle in a frame of a bake, bytes: three coordinates of 16 bits, if compression does
+/// not help.
 constexpr std::uint64_t bytes_of_particle = 6;
 constexpr std::uint64_t bytes_of_temperature = 2;
-/// Largest size of a stored foam particle: three coordinates and a radius, 16 bits each.
+/// Largest size of a foam particle in a frame of a bake, bytes: three coordinates and a radius, 16 bits each.
 constexpr std::uint64_t bytes_of_foam = 8;
 /// Upper bound for pictures, bytes per pixel; pictures of the installed scenes take about 0.6.
 constexpr std::uint64_t bytes_of_pixel = 1;

@@ -1,5 +1,5 @@
 #pragma once
-/// Makes all bakes of a protocol; keeps valid ones and replaces invalid ones.
+/// Makes all bakes (files of precomputed frames) of a protocol; keeps valid ones and replaces invalid ones.
 
 #include <filesystem>
 #include <functional>

@@ -1,4 +1,5 @@
-/// vip-study check: checks a protocol on a display and on this machine.
+/// vip-study check: how exactly a display shows the frame rates of a protocol, and whether this machine
+/// computes its fluid in time; also prints the protocol's blocks, duration and balance.
 
 #include <memory>
 #include <string>

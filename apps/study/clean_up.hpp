@@ -1,5 +1,6 @@
 #pragma once
-/// Carries out withdrawals for several commands, and prints the results of a withdrawal or a merge.
+/// Deletes the data of participants who withdraw, for several commands, and prints the results of a
+/// withdrawal or a merge.
 
 #include <filesystem>
 #include <string>

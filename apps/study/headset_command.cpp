@@ -1,4 +1,5 @@
-/// vip-study headset: shows the runtime's features, and checks a protocol on the headset.
+/// vip-study headset: shows what the headset and its OpenXR runtime offer, and which frame rates of a
+/// protocol the headset shows exactly.
 
 #include <fmt/format.h>
 

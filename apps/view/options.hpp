@@ -22,12 +22,12 @@ struct ViewOptions {
   std::string backend = "auto";
   std::string preset = "tuned";
   std::string overlay = "none";             ///< values painted over the water; headless: one or several
-  std::string tau = "live";                 ///< "live" or "fixed:X"
+  std::string tau = "live";                 ///< tolerance tau: "live" (from frame times) or "fixed:X"
   int levels = 4;                           ///< number of levels, N
   std::optional<double> alpha;              ///< temporal feature's weight in saliency; none = the preset's
   std::optional<int> iterations;            ///< solver iterations per substep; none = the scene's
   std::string camera = "view";              ///< view | overview
-  std::string ptpe;                         ///< file of a fitted PTPE model; empty = none
+  std::string ptpe;                         ///< file of a fitted PTPE model (a, b of tau); empty = none
   std::optional<sim::SettingFile> setting;  ///< the setting file that take_setting() read
   std::shared_ptr<const study::SweepTables> sweep;  ///< costs and errors of settings; null = not requested
   std::string png_folder;                           ///< folder for pictures; empty = no pictures
@@ -61,8 +61,9 @@ sim::Scene drawn(const PreparedFluid& prepared);
 /// iterations.
 void take_setting(ViewOptions& options, const std::string& path);
 
-/// Lines with the cost and the errors that the sweep measured for a setting in this scene; no lines without a
-/// sweep. If the preset is not "tuned", one line that says that the setting was not measured.
+/// Lines with the cost and the errors of a setting in this scene, as measured by a sweep (runs of many
+/// settings, options.sweep); no lines without a sweep. If the preset is not "tuned", one line that says that
+/// the setting was not measured.
 std::vector<std::string> price_lines(const ViewOptions& options, const sim::SolverSetting& setting,
                                      const sim::Scene& scene);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Predicts from measured step times whether this machine computes and draws live fluid at the frame rates of
-/// a protocol.
+/// Predicts from measured step times whether this machine computes and draws the fluid at the frame rates of
+/// a protocol while it shows it.
 
 #include <functional>
 #include <string>

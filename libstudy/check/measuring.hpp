@@ -1,5 +1,6 @@
 #pragma once
-/// Runs live stimuli like a session, as fast as possible, and records the time of each step.
+/// Computes and draws the steps of a stimulus as a session without bakes does, but as fast as possible, and
+/// records the time of each step.
 
 #include <functional>
 #include <vector>

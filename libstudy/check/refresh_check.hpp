@@ -1,5 +1,6 @@
 #pragma once
-/// Checks a protocol on displays with a fixed refresh: the data of `vip-study check`.
+/// Checks how exactly displays with a fixed refresh show the frame rates of a protocol, for `vip-study
+/// check`.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// The parts and duration of a protocol's session, and the balance of its assignment.
+/// The parts and duration of a protocol's session, and how evenly its groups of cells are assigned to people.
 
 #include <string>
 #include <vector>

@@ -16,7 +16,7 @@ namespace {
 /// of cells to show, and the row of the square (Latin or Williams) that orders their trials.
 struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
-  int round = 0;            ///< number of complete passes through all sequences before this slot
+  int round = 0;            ///< number of complete passes through all sequences of groups before this slot
   /// Row of the square for the first group, modulo the number of rows; each later group takes the next row.
   /// Under Assignment::Balanced, over all slots, each sequence of groups begins with each row equally often.
   /// In a balanced design with pairs, each row also occurs equally often in each of the two interval orders.

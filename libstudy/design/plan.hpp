@@ -1,6 +1,7 @@
 #pragma once
 /// Plans the cells that a participant sees and their order. The plan is a pure function of (protocol hash,
-/// participant, seed, slot).
+/// participant, seed, slot). A slot is a place in the assignment of groups and orders of cells to
+/// participants.
 
 #include <cstdint>
 #include <optional>

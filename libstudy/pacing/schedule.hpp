@@ -1,5 +1,6 @@
 #pragma once
-/// FPS schedules with exact moments, and their feasibility on a display with a fixed refresh.
+/// Schedules: frame intervals with an exact mean and standard deviation of the frame rate, and how exactly a
+/// display with a fixed refresh can show them.
 
 #include <cstdint>
 #include <memory>

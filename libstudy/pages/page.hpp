@@ -61,7 +61,7 @@ class PageState {
   void click_confirm(std::int64_t now_ns);
   /// Appends letters to the focused Text. PageKey::Erase removes the last letter.
   void type(const std::string& letters, std::int64_t now_ns);
-  /// Sets the content of a Text that was typed at the keyboard.
+  /// Replaces the whole content of a Text by words typed at the keyboard.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
   /// Excludes a period from response times, such as the time in a dialog above the page. Then ignores input
   /// for 300 ms. The time of a Reaction begins anew.
