@@ -37,13 +37,14 @@ struct HeadsetBenchOptions {
   bool passes = false;
 };
 
-/// Milliseconds of each stage, by frame. A stage ends when the GPU is idle.
+/// Milliseconds of each stage of a frame, one value per frame: computing the fluid, drawing both eyes,
+/// handing the picture to the runtime, and all three. A stage ends when the GPU is idle.
 struct Stages {
   std::vector<double> step, draw, hand_over, whole;
   measure::PassTable passes = {};
 };
 
-/// Steps a live fluid and draws it for both eyes in every frame slot, one stage after another.
+/// Computes a step of the fluid and draws it for both eyes in every frame slot, one stage after another.
 class HeadsetBench {
  public:
   explicit HeadsetBench(const HeadsetBenchOptions& options)

@@ -49,7 +49,8 @@ std::vector<const HardCase*> cases_of(const std::string& words) {
     return out;
   }
   for (const auto& word : base::split(words)) out.push_back(&sim::cases::hard_case(word));
-  if (out.empty()) throw base::Error("--case", "names no case", "leave it out, or write for example S9");
+  if (out.empty())
+    throw base::Error("--case", "names no case", "leave it out for all cases, or write for example S9");
   return out;
 }
 
@@ -61,7 +62,8 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
   }
   for (const auto& word : base::split(words)) out.push_back(sim::parse_method(word));
   if (out.empty())
-    throw base::Error("--method", "names no method", "leave it out, or write for example Ours");
+    throw base::Error("--method", "names no method",
+                      "leave it out for all methods, or write for example Ours");
   return out;
 }
 

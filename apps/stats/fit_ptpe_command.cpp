@@ -36,8 +36,7 @@ struct FitCommand {
   std::optional<std::string> exclude;  ///< replaces the plan's rule for timing verdicts
   std::optional<std::uint64_t> seed;   ///< replaces the plan's seed
   /// Largest half width of the curve's confidence band, as a fraction of mu, with which the file for the
-  /// solver
-  /// (--out) is still written.
+  /// solver (--out) is still written.
   double max_width = 0.35;
   bool force = false;
   bool accept_form = false;
@@ -134,9 +133,9 @@ void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
-/// Appends a line to the record of calibrations before it writes the solver's file, so that the record
-/// contains every solver's file. The lock makes simultaneous fits write one after another, so that no line is
-/// lost and the last line describes the file that remains.
+/// Appends a line to the record of calibrations, FILE.history.jsonl, before it writes the file for the solver
+/// (--out FILE), so that the record contains every such file. The lock makes simultaneous fits write one
+/// after another, so that no line is lost and the last line describes the file that remains.
 void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(study::ptpe_file(fit));

@@ -47,7 +47,7 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
   if (!command.codes.empty()) return command.codes;
   if (command.run.observer.empty())
     throw base::Error("--participant", "is missing: no participant is named",
-                      "write --participant P07, or name an --observer");
+                      "write --participant P07 for a person, or --observer NAME for simulated participants");
   const int count = command.participants > 0 ? command.participants : protocol.participants;
   std::vector<std::string> codes;
   for (int i = 1; i <= count; ++i) codes.push_back((i < 10 ? "P0" : "P") + std::to_string(i));

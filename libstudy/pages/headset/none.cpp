@@ -6,7 +6,7 @@ namespace study {
 
 HeadsetChoice choice_for_person(const AnswerWays&) {
   throw base::Error("--display openxr", "this build has no pages for a person (it found no Dear ImGui)",
-                    "name an --observer, or install libimgui-dev and build again");
+                    "simulate participants with --observer NAME, or install libimgui-dev and build again");
 }
 
 HeadsetPerson make_headset_person(HeadsetDisplay&, const AnswerWays& ways, const Protocol&, const Clock&) {
