@@ -79,8 +79,8 @@ enum class Feasibility { Exact, Approximate, Unreachable };
 struct RefreshVerdict {
   Feasibility feasibility = Feasibility::Unreachable;
   std::int64_t frames = 0;  ///< number N of frames
-  double mean = 0;          ///< of the best list, frames/s; harmonic for a pattern, else as the rules say
-  double sd = 0;            ///< of the best list, frames/s
+  double mean = 0;          ///< of the best holds found, frames/s; harmonic for a pattern, else as rules.mean
+  double sd = 0;            ///< of the best holds found, frames/s
   /// 2-Wasserstein distance to the unquantised rates, frames/s; for a pattern, the root mean square change of
   /// the frames' rates.
   double distance = 0;
