@@ -55,7 +55,7 @@ inline bool stays_off(const TemporalOptions& options) {
 
 struct SimulationOptions : SolverNumbers {
   MethodKind method = MethodKind::HiRes;
-  std::int64_t n_star = 32 * 1024;
+  std::int64_t n_star = 32 * 1024;  ///< n_*: number of particles if all had the coarsest level, 3
   Backend backend = Backend::Cpu;
   Readings readings = readings_of(Preset::Tuned);
   /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
@@ -132,7 +132,7 @@ struct LevelEvents {
   double energy_lost_j = 0;  ///< kinetic energy lost in merges
 };
 
-/// Inputs and results of temporal acceleration in one frame.
+/// Inputs and results of temporal acceleration in one frame; Eq. 11 is ViP-Fluid's.
 struct TemporalReport {
   std::optional<double> tau;      ///< frames/s, Eq. 11; none = no frame time known yet
   std::optional<FrameRate> rate;  ///< mu and delta of tau; none = tau was given, or no frame time yet
@@ -157,7 +157,8 @@ struct SubstepCount {
   int wished = 0;  ///< number that speeds and forces require; larger than `taken` if the limit applied
 };
 
-/// Times of the last frame's parts, ms, divided as in the paper's Table 2.
+/// Times of the last frame's parts, ms, divided as in Table 2 of ViP-Fluid, whose equations the comments
+/// name.
 struct PartTimes {
   double saliency_ms = 0;    ///< Eq. 1-9
   double levels_ms = 0;      ///< grading, splitting, merging
@@ -180,10 +181,10 @@ struct RelaxedStart {
   double compression = 0;  ///< remaining mass-weighted mean of max(rho / rho_0 - 1, 0)
 };
 
-/// Heat divided by the water's specific heat, in m_* K, relative to water at the reference temperature; all
-/// zero unless the scene lists the effect heat. poured: brought in by nozzles; taken: removed with water that
-/// nozzles take from the tank; drained: lost through outlets. held + taken + drained - poured - from_walls is
-/// constant.
+/// Heat divided by the water's specific heat, in m_* K with m_* the mass of a particle of level 0, relative
+/// to water at the reference temperature; all zero unless the scene lists the effect heat. poured: brought in
+/// by nozzles; taken: removed with water that nozzles take from the tank; drained: lost through outlets. held
+/// + taken + drained - poured - from_walls is constant.
 struct HeatReport {
   double held = 0;                                            ///< heat of the water now
   double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
@@ -214,7 +215,8 @@ struct FrameReport {
   double neighbours_mean = 0;     ///< mean number of neighbours within h, without the particle itself
   double listed_mean = 0;         ///< mean length of the neighbour lists, which reach beyond h
   double speed_max_m_s = 0;
-  std::int64_t poured = 0;        ///< mass poured by nozzles since the simulation was made, in m_*
+  /// mass poured by nozzles since the simulation was made, in m_*, the mass of a level-0 particle
+  std::int64_t poured = 0;
   std::int64_t particles_in = 0;  ///< particles made by nozzles
   /// Particles taken by nozzles or released through outlets. If all particles have one level, nozzles take as
   /// many particles as they make.
@@ -233,7 +235,7 @@ struct FrameReport {
 
 /// Numbers that may change while the fluid runs.
 struct LiveNumbers {
-  double alpha = 0;    ///< Eq. 1: weight of the temporal feature, 0 .. 1
+  double alpha = 0;    ///< ViP-Fluid Eq. 1: weight of the temporal feature, 0 .. 1
   int iterations = 0;  ///< constraint projections per substep, 1 .. most_iterations
 
   static constexpr int most_iterations = SolverNumbers::most_iterations;
@@ -279,7 +281,8 @@ class Simulation {
   /// create more than an int can count. base::Error, after which the simulation cannot be used: the device is
   /// out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
-  /// Sets the duration of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
+  /// Sets the duration of the last whole frame, ms, from which the frame rate tolerance tau of temporal
+  /// acceleration follows (ViP-Fluid Eq. 11). Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
   /// Account of the last frame; before the first frame, the particle counts of the start.
   virtual const FrameAccount& account() const = 0;
@@ -309,9 +312,10 @@ class Simulation {
   /// SimulationOptions::saliency_parts the fields other than s and target are 0. Empty at frame 0, and in
   /// runs that compute neither saliency nor gaze targets.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
-  /// Saliency (Eq. 1-9) of the present state for the given eyes, for any method, as if this were the first
-  /// frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
-  /// later read_particles. base::Error if a picture lies in GL buffers that this back end cannot read.
+  /// Saliency (ViP-Fluid Eq. 1-9) of the present state for the given eyes, for any method, as if this were
+  /// the first frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the
+  /// order of a later read_particles. base::Error if a picture lies in GL buffers that this back end cannot
+  /// read.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// ParticleSaliency::s and target by the rule of methods whose levels follow the gaze alone, in the order
   /// of read_particles; the other fields are 0. Pictures are not read.
@@ -323,8 +327,8 @@ class Simulation {
   /// The state of every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
   /// Writes the whole state between two frames, for SimulationOptions::resume_from, to a temporary file that
-  /// is then renamed. The state includes the last look() and the frame times behind tau. It excludes
-  /// part_times() and momentum(). base::Error if the file cannot be written.
+  /// is then renamed. The state includes the last look() and the frame times from which tau follows
+  /// (frame_time). It excludes part_times() and momentum(). base::Error if the file cannot be written.
   virtual void save_state(const std::filesystem::path& path) = 0;
   /// Copies positions and radii into a GL buffer of this thread's context, on the device. Returns false if
   /// this back end cannot write the buffer (a CPU, or a context of another device) or the buffer is too

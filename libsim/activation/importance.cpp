@@ -4,7 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr float range_share = 0.1f;  ///< per frame, the range moves by this share towards the new percentiles
+/// share of the way to the new percentiles that the range of F_pim moves per frame
+constexpr float range_share = 0.1f;
 
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
@@ -30,7 +31,8 @@ struct VelocitySlopes {
     across_levels[i] = with_w(by_level(level, cell), known);
   }
 
-  /// Central difference of V per cell; one-sided next to the border and to cells without a value.
+  /// Central difference of the mean velocity V per cell; one-sided next to the border and to cells without a
+  /// value.
   SIM_FN Vec3 along(int level, int cell, int stride, int at, int size) const {
     const Vec4 none{0, 0, 0, value_unknown};
     const Vec4* here = velocity + level * block.size() + cell;
@@ -39,8 +41,8 @@ struct VelocitySlopes {
     return between(low, *here, high, 1, 1);
   }
 
-  /// Difference of V per level, between the nearest finer and the nearest coarser level with particles in the
-  /// cell; one-sided if only one of them exists.
+  /// Difference of the mean velocity V per level, between the nearest finer and the nearest coarser level
+  /// with particles in the cell; one-sided if only one of them exists.
   SIM_FN Vec3 by_level(int level, int cell) const {
     const int cells = block.size();
     Vec4 low{0, 0, 0, value_unknown};
@@ -72,7 +74,8 @@ struct VelocitySlopes {
   }
 };
 
-/// Sum of V over the levels that have particles, and differences of E between cells.
+/// Sum of the mean velocity V over the levels that have particles in a cell, and differences of the kinetic
+/// energy E between cells.
 struct CellSums {
   const Vec4* velocity;
   const float* energy;

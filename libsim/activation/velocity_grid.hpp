@@ -136,8 +136,8 @@ class CellMomentum {
   MomentumSum* of_[most] = {};
 };
 
-/// Converts momentum sums to mean velocities, and fills entries without particles
-/// (VelocityGrid::finish_velocity).
+/// Converts momentum sums to mean velocities. Entries without particles keep the last frame's measured
+/// velocity, else the mean over the levels of the cell (VelocityGrid::finish_velocity).
 struct FinishVelocity {
   const MomentumSum* sums;
   Vec4* velocity;

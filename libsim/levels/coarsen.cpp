@@ -102,14 +102,19 @@ class Coarsening {
 };
 
 void check(std::span<const ParticleState> finest, std::span<const std::uint8_t> targets) {
-  if (finest.size() % 8) throw std::invalid_argument("coarsening needs a multiple of eight particles");
-  if (targets.size() != finest.size()) throw std::invalid_argument("coarsening needs one target a particle");
+  if (finest.size() % 8)
+    throw std::invalid_argument("sim::coarsen: the particles are no multiple of eight; give 8, 16, 24, ...");
+  if (targets.size() != finest.size())
+    throw std::invalid_argument(
+        "sim::coarsen: there are not as many targets as particles; give one for each");
   for (std::size_t i = 0; i < finest.size(); ++i) {
     const auto& p = finest[i];
-    if (p.level != 0) throw std::invalid_argument("coarsening starts from particles of level 0");
-    if (targets[i] > 3) throw std::invalid_argument("target levels are 0 to 3");
+    if (p.level != 0)
+      throw std::invalid_argument("sim::coarsen: a particle is not of level 0; give only finest particles");
+    if (targets[i] > 3)
+      throw std::invalid_argument("sim::coarsen: a target level is above 3; use levels 0 to 3");
     if (!std::isfinite(p.x_m) || !std::isfinite(p.y_m) || !std::isfinite(p.z_m))
-      throw std::invalid_argument("coarsening needs finite positions");
+      throw std::invalid_argument("sim::coarsen: a position is not finite; give finite positions");
   }
 }
 

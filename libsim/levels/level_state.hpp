@@ -137,9 +137,11 @@ struct LevelState {
   /// flags or numbers, and their prefix sums: of splits, of the particles that each split adds, of free ids,
   /// of new children
   Array<int> flags, sums;
-  Array<std::uint64_t> keys;        ///< keys of splits for sorting by priority
-  Array<int> free_ids;              ///< ids that no particle uses, ascending
-  Array<int> beside, beside_count;  ///< slots of the particles that `partings` moves, and their number
+  Array<std::uint64_t> keys;  ///< keys of splits for sorting by priority
+  Array<int> free_ids;        ///< ids that no particle uses, ascending
+  /// slots of the particles that are moved apart after splits and merges (LevelRules::partings), and their
+  /// number
+  Array<int> beside, beside_count;
   // Relays (relay.cpp) reuse memory. The two particles for which a relay bids are stored in `births` and
   // `places`, which compact() overwrites later in the frame. The best bids are stored in `keys`, which splits
   // no longer need.

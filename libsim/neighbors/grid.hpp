@@ -40,7 +40,7 @@ struct LevelCells {
   }
 };
 
-/// The table in the form that kernels use.
+/// The cells of the grids of all levels, in one table, in the form that kernels use.
 struct CellTable {
   LevelCells level[LevelSupports::most];
   int levels;        ///< number of levels in use

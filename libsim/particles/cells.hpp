@@ -17,16 +17,17 @@ struct Domain {
 };
 
 /// An open rectangle in a side of a CellBlock. The side is perpendicular to `axis` (0, 1, 2 = x, y, z), at
-/// the block's low or high end. The rectangle extends from `low` to `high` along the other two axes, in
-/// ascending order, in cells of the finest grid.
+/// the block's low or high end. The rectangle extends from `low` to `high` along the two remaining axes, the
+/// lower axis first. The unit is a cell of the coarse pressure's finest multigrid level.
 struct OpenFace {
   int axis;
   bool at_high;
   float low[2], high[2];
 };
 
-/// Numbers of cells of one grid; in indices x varies fastest. For the coarse pressure its sides and bottom
-/// are walls except for open faces, and its top is air or a lid.
+/// Numbers of cells of one grid; in indices x varies fastest. If the grid is one of the coarse pressure
+/// (pressure/multigrid.hpp), its sides and bottom are walls except for open faces, and its top is air or a
+/// lid.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 

@@ -169,8 +169,8 @@ constexpr int ruled_count() {
   return sum;
 }
 
-/// All columns whose rule is by_rule(). They have values at the start of a run, so that passes may read them
-/// before any pass writes them.
+/// All columns whose values splits and merges compute by rule (by_rule(): mean by mass, sum, maximum or
+/// reset). They have values at the start of a run, so that passes may read them before any pass writes them.
 constexpr ColumnSet ruled_columns() {
   ColumnSet out;
 #define SIM_ADD(Name, member, Type, life, rule) \
@@ -181,7 +181,8 @@ constexpr ColumnSet ruled_columns() {
   return out;
 }
 
-/// The allocated columns of type T whose rule is by_rule(), with functions that apply the rules.
+/// The allocated columns of type T whose rule by_rule() accepts (mean by mass, sum, maximum, reset), with
+/// functions that apply the rules.
 template <class T>
 struct RuledColumns {
   T* values[ruled_count<T>()];
@@ -229,7 +230,7 @@ struct RuledColumns {
   }
 };
 
-/// All allocated columns whose rule is by_rule().
+/// All allocated columns whose rule by_rule() accepts (mean by mass, sum, maximum, reset), of both types.
 struct Descents {
   RuledColumns<float> floats;
   RuledColumns<std::uint8_t> bytes;

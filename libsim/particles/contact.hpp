@@ -53,10 +53,10 @@ struct Feelers {
   }
   SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
 
-  /// Contact of this body's point k with the body `other`, without `ahead`. Near an edge of `other`, rounding
-  /// changes which part of its surface is nearest to the point. Therefore `other` is replaced by a plane: the
-  /// tangent at its surface point nearest to a position slightly deeper in this body. The gap is the distance
-  /// of point k from this plane, minus the radius.
+  /// Contact of this body's point k with the body `other`; leaves `ahead`, the smallest gap in the substep,
+  /// 0. Near an edge of `other`, rounding changes which part of its surface is nearest to the point.
+  /// Therefore `other` is replaced by a plane: the tangent at its surface point nearest to a position
+  /// slightly deeper in this body. The gap is the distance of point k from this plane, minus the radius.
   SIM_FN Contact meets(int k, const Solids& solids, int other) const {
     Vec3 own, deeper;
     if (k < corners()) {
@@ -73,7 +73,7 @@ struct Feelers {
     const float gap = near.distance + dot(near.normal, at - from) - body.radius;
     return {at - body.radius * near.normal, near.normal, gap, 0};
   }
-  /// Contact of corner k with a wall, without `ahead`.
+  /// Contact of corner k with a wall; leaves `ahead`, the smallest gap in the substep, 0.
   SIM_FN Contact meets(int k, const Walls& walls, int wall) const {
     const Vec3 at = in_world(corner(k));
     const Vec3 normal = walls.planes[wall].normal;
@@ -121,10 +121,10 @@ struct Feelers {
 /// Maximum number of contacts per pair of bodies, or per body and wall.
 inline constexpr int most_contacts = 4;
 
-/// Selects contacts that together hold two bodies apart, from n contacts. Only contacts with `ahead` below
-/// `pad` (m) count. The first is the one with the smallest `ahead`. Each further one is the farthest from the
-/// selected ones, and more than pad / 100 away from each. Returns the number of selected contacts, at most
-/// most_contacts.
+/// Selects contacts that together hold two bodies apart, from n contacts. Only contacts count whose `ahead`,
+/// the smallest gap expected in the substep, is below `pad` (both in m). The first selected contact is the
+/// one with the smallest `ahead`. Each further one is the farthest from the selected ones, and more than pad
+/// / 100 away from each. Returns the number of selected contacts, at most most_contacts.
 template <class Contacts>
 SIM_FN int pick_contacts(const Contacts& all, int n, float pad, Contact* picked) {
   int count = 0;

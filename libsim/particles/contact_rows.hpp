@@ -161,7 +161,8 @@ struct ContactRows {
       worth = next;
     }
   }
-  /// Squared residual of an open row, divided by its ease; 0 for closed rows.
+  /// Squared residual (missing separation speed, m/s) of an open row, divided by the row's speed per unit
+  /// push; 0 for closed rows.
   struct Worth {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const {

@@ -13,13 +13,16 @@ struct FreeBody {
   Vec3 inertia;   ///< about the body's own axes, m_* m2
   Vec3 momentum;  ///< m_* m/s
   Vec3 spin;      ///< angular momentum about the centre, m_* m2/s
-  /// Force and torque from the water, applied in the next substep: m_* m/s2 and m_* m2/s2.
+  /// Force and torque from the water, smoothed over substeps (Push in free_bodies.cpp), and applied in the
+  /// next substep: m_* m/s2 and m_* m2/s2.
   Vec3 force, torque;
-  Vec3 force_left, torque_left;  ///< given by the water, but not yet applied
-  Vec3 by_walls;                 ///< momentum received from walls in this frame, m_* m/s
-  /// part of the body's sum of pushes in this frame that earlier substeps have already used
+  /// sums over all substeps: what the water gave, minus `force` and `torque` of that substep
+  Vec3 force_left, torque_left;
+  Vec3 by_walls;  ///< momentum received from walls in this frame, m_* m/s
+  /// the body's pushes on the water in this frame, summed up to the end of the last substep
+  /// (ObstacleState::sums, without the pushes of effects)
   BodySum counted;
-  BodySum counted_of_effects;  ///< the same for the sum of pushes by effects
+  BodySum counted_of_effects;  ///< the same sum for the pushes of effects
 };
 
 /// A body's motion: velocity of the centre, m/s, and angular velocity, rad/s.

@@ -40,7 +40,8 @@ struct Meeting {
   static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
   /// Share of the penetration beyond slop that a substep corrects.
   static constexpr float mended = 0.5f;
-  /// First term of pad(), as a share of the smaller body's reach.
+  /// First term of pad(), the distance below which contacts are solved, as a share of the smaller body's
+  /// radius (Feelers::reach).
   static constexpr float wide = 0.02f;
 
   SIM_FN int width() const { return rough ? 3 : 1; }

@@ -9,7 +9,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// The Kept columns of one type, with source and destination of a reordering.
+/// The columns of one type whose values last as long as the particle (Life::Kept), with source and
+/// destination of a reordering.
 template <class T>
 struct Extras {
   static constexpr int most = 8;

@@ -70,8 +70,9 @@ class Particles {
   /// Allocates each column of the set for `capacity` particles (at least n), n of them in use, and frees the
   /// other columns.
   void allocate(ColumnSet set, int n, int capacity = 0);
-  /// Allocates missing columns of the set with the same capacity, set to 0 if their rule is by_rule(), and
-  /// frees columns outside the set. Columns that stay keep their values.
+  /// Allocates missing columns of the set with the same capacity as the present ones, and frees columns
+  /// outside the set. New columns that splits and merges compute by rule (by_rule()) are set to 0. Columns
+  /// that stay keep their values.
   void change_columns(ColumnSet set);
   int size() const { return n_; }
   int capacity() const { return capacity_; }

@@ -179,8 +179,9 @@ struct BodyPatch {
 };
 struct PatchSum {
   BodySum given;
-  /// wetted area: sum of d^2 over the particles within their support of the body, each times the share of its
-  /// square on the patch, in d_*^2 / CellWater::fixed_point
+  /// wetted area: the sum, over the particles within their support h of the body, of d^2 times the share of a
+  /// square of edge d, projected onto the body, that lies in the patch; d = h / 2. In units of d_*^2 /
+  /// CellWater::fixed_point, with d_* the spacing of the finest particles
   std::uint64_t wet;
 };
 /// All patches of a scene; most scenes have none.
@@ -210,7 +211,8 @@ struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
-  /// weight of a push: 1 plus the shares of the push that the momentum steps of later projections repeat
+  /// weight of a push in one projection: 1 plus the shares of it that the substep's later projections add
+  /// again, because each repeats a share of the step before (SolverParameters::momentum)
   float times;
   BodyPatches patches;
 
