@@ -33,7 +33,7 @@ struct MethodTraits {
   bool adaptive() const { return target != TargetSource::None; }
 };
 
-/// The five methods, in the order of the paper's tables.
+/// The five methods, in the order of ViP-Fluid's tables.
 const std::array<MethodTraits, 5>& all_methods();
 const MethodTraits& traits_of(MethodKind method);
 

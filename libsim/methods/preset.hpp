@@ -1,7 +1,7 @@
 #pragma once
-/// Switches for ambiguities in the paper, and two presets. `paper` follows the paper's own equation wherever
-/// it is possible, with plain misprints corrected; `tuned` takes the recommended reading. docs/results.md
-/// compares their pictures.
+/// Switches for ambiguities in the paper ViP-Fluid, and two presets. `paper` follows the paper's own equation
+/// wherever it is possible, with plain misprints corrected; `tuned` takes the recommended reading.
+/// docs/results.md compares their pictures.
 
 #include <string>
 #include <string_view>
@@ -60,8 +60,8 @@ struct Readings {
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
   /// Limit speed of water at rest, as a share of sqrt(g d_*); 0 = no water counts as at rest. kick_filter and
-  /// calm_viscosity weaken as the speed rises to this limit. calm_floor and calm_dead_band apply in full up to
-  /// about this speed and fall to 0 at 1.5 times it.
+  /// calm_viscosity weaken as the speed rises to this limit. calm_floor and calm_dead_band apply in full up
+  /// to about this speed and fall to 0 at 1.5 times it.
   double calm_speed = 0.65;
   /// Eq. 6: in water at rest this value is subtracted from the temporal feature, down to 0 at least, before
   /// gamma_t divides the feature. Otherwise the motion that splits and merges cause would trigger further
@@ -105,9 +105,9 @@ struct Readings {
   /// number. So a particle whose s varies about the border of two levels does not alternately split and
   /// merge. [0, 1)
   double merge_dead_band = 0.7;
-  /// Added to merge_dead_band for particles at rest; fades out with speed as calm_floor does. Each merge stirs
-  /// still water a little, and stirred water splits and merges again (docs/decisions.md, "Still water with
-  /// levels"). >= 0
+  /// Added to merge_dead_band for particles at rest: in full up to about the limit speed of calm_speed,
+  /// falling to 0 at 1.5 times it. Each merge stirs still water a little, and stirred water splits and merges
+  /// again (docs/decisions.md, "Still water with levels"). >= 0
   double calm_dead_band = 0.7;
   /// Strength of a filter of velocity changes near particles that just split or merged. In a substep the
   /// filter removes up to this share of the differences between neighbours' velocity changes, and most in
@@ -119,8 +119,8 @@ struct Readings {
   double calm_viscosity = 20;
 
   // Algorithm 3: temporal acceleration
-  /// Eq. 14: the velocity difference between levels, dV/dl, is divided by |V| + epsilon, which makes it
-  /// dimensionless; false: it stays in m/s.
+  /// Eq. 14: the difference dV/dl of the mean velocity V between levels l is divided by |V| + epsilon, which
+  /// makes it dimensionless; false: it stays in m/s.
   bool dimensionless_levels = true;
   /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
   int longest_rest_frames = 1;
@@ -137,7 +137,8 @@ struct Readings {
   /// only the remaining velocity change; false: their velocity is constant within the frame. Needs
   /// inherit_change.
   bool inactive_pressed = true;
-  /// Edge of the cells for inherited changes, in d_*; the paper's cells for V and E have an edge of 10 d_*.
+  /// Edge of the cells for inherited changes, in d_*; the paper's cells for mean velocity and kinetic energy
+  /// have an edge of 10 d_*.
   double inherit_cell_spacings = 5;
   /// In each frame, after the inherited change, an inactive particle's velocity v becomes v +
   /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell. Without effect if

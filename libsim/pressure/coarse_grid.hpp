@@ -7,7 +7,8 @@
 namespace sim::SIM_BACKEND {
 
 /// Sums over the particles of a cell: volume, and volume times (rho / rho_0 - 1). They are in fixed point, so
-/// that they do not depend on the order of addition.
+/// that they do not depend on the order of addition; the unit is CellWater::unit_volume /
+/// CellWater::fixed_point.
 struct CellSum {
   std::uint64_t volume, excess;
 };

@@ -92,8 +92,9 @@ SIM_FN float around(const GridView& grid, Place p, int i) {
   return sum;
 }
 
-/// A Gauss-Seidel sweep over the cells of one colour of a checkerboard. push_only keeps q >= 0; it is set on
-/// the finest grid. The index counts pairs of adjacent cells in a row, of which one has the colour.
+/// A Gauss-Seidel sweep over the cells of one colour of a checkerboard. push_only keeps the pressure q >= 0;
+/// it is set on the finest grid. The index counts pairs of adjacent cells in a row, of which one has the
+/// colour.
 struct Smooth {
   GridView grid;
   int colour;
@@ -114,7 +115,7 @@ struct Smooth {
 };
 
 /// Computes the source of a coarser cell: the sum of the residuals of its fluid children. With push_only, a
-/// child with q = 0 and a negative residual contributes nothing.
+/// child at the bound q = 0 of the pressure, with a negative residual, contributes nothing.
 struct Restrict {
   GridView fine, coarse;
   bool push_only;

@@ -68,7 +68,8 @@ struct ListFluid {
   }
 };
 
-/// Copies kinds and sources of the first small grid into the block's memory.
+/// Copies kinds and sources of the first small grid, the finest grid that one thread block solves, into the
+/// block's memory.
 struct Load {
   GridView from, to;
   SIM_FN void operator()(int i) const {

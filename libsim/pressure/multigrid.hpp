@@ -11,9 +11,9 @@ namespace sim::SIM_BACKEND {
 
 enum class CellKind : std::uint8_t { Air, Fluid, Solid };
 
-/// One grid in the form that kernels use. The equation of a fluid cell i: the sum of conductance x (q_i -
-/// q_j), over those of its six neighbours j that are not solid, plus openness x conductance x q_i for each
-/// open face, equals source_i.
+/// One grid in the form that kernels use. The equation of a fluid cell i for the pressure q: the sum of
+/// conductance x (q_i - q_j), over those of its six neighbours j that are not solid, plus openness x
+/// conductance x q_i for each open face, equals source_i.
 struct GridView {
   CellBlock block, finest;
   Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubic cells

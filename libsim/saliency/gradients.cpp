@@ -43,7 +43,7 @@ struct Gradients {
   SIM_FN void sum_over(Team team) {
     for (Vec4& a : axis) a = {team.sum(a.x), team.sum(a.y), team.sum(a.z), team.sum(a.w)};
   }
-  /// f_T gamma_t of Eq. 6 from these gradients.
+  /// The temporal feature before occlusion, f_T gamma_t of ViP-Fluid Eq. 6, from these gradients.
   SIM_FN float feature(const GradientFields& f, int i) const {
     float by_velocity = 0;
     float by_density = 0;
@@ -61,7 +61,8 @@ SIM_FN float pair_support(const GradientFields& f, int i, int j) {
   return 0.5f * (f.position[i].w + f.position[j].w);
 }
 
-/// m_j W_ij without the factors common to all weights of i.
+/// Weight of neighbour j in an average around particle i: m_j W_ij, without the factors that all neighbours
+/// of i share.
 SIM_FN float average_weight(const GradientFields& f, int i, int j) {
   const Vec4 other = f.position[j];
   const Vec3 offset = xyz(f.position[i]) - xyz(other);

@@ -1,18 +1,19 @@
 #pragma once
-/// The temporal feature before occlusion (paper Eq. 6): spatial change of density and velocity around a
-/// particle.
+/// The temporal feature before occlusion, f_T gamma_t of ViP-Fluid Eq. 6: spatial change of density and
+/// velocity around a particle.
 
 #include "libsim/methods/preset.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Inputs and outputs of all forms of the gradient.
+/// Inputs and outputs of the gradients, whatever their reach (GradientReach). The epsilons are added to the
+/// divisors of Eq. 6, density and speed.
 struct GradientFields {
   const Vec4* position;
   const Vec4* velocity;
   const float* density;   ///< rho / rho_0
-  float* out;             ///< output: f_T gamma_t
+  float* out;             ///< output: f_T gamma_t, the temporal feature before occlusion
   float density_epsilon;  ///< share of rho_0
   float speed_epsilon;    ///< m/s
   bool dimensionless;

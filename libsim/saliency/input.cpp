@@ -60,7 +60,7 @@ void check(const EyeLook& look) {
   check_camera(g.view);
 }
 
-/// How an eye's picture is passed.
+/// Where an eye's picture comes from: GL's memory (Device), an array on the host, or no picture.
 PictureWay way_of(const EyeLook& look) {
   if (look.shared) return PictureWay::Device;
   return look.seen && look.seen->width > 0 ? PictureWay::Host : PictureWay::None;

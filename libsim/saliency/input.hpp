@@ -44,7 +44,8 @@ class SaliencyInput {
   Eyes next_frame(double dt_s, double hold_s);
   /// Number of frames without a valid gaze, summed over the eyes.
   std::uint64_t gaze_lost() const { return gaze_lost_; }
-  /// How the last call of look() with `pictures` set received its pictures.
+  /// Where the pictures of the last look() with `pictures` set came from (GL memory or the host), and which
+  /// simulation frame they show.
   SeenReport seen() const { return seen_; }
   /// Bytes used by the pictures.
   std::size_t bytes() const;

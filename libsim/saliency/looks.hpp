@@ -33,14 +33,14 @@ struct EyeLook {
   double visual_scale = 1;
 };
 
-/// How the last picture was passed to saliency.
+/// Where the picture that saliency uses came from.
 enum class PictureWay {
   None,    ///< no picture was given, or the method uses none
   Device,  ///< from GL's memory to the back end's, on one device
   Host     ///< read back, and uploaded if the back end is not the CPU
 };
 
-/// The picture used by saliency, for records.
+/// Where the picture used by saliency came from, and its frame, for records.
 struct SeenReport {
   PictureWay way = PictureWay::None;
   int frame = -1;  ///< EyeLook::seen_frame; the smaller one of two eyes
@@ -51,8 +51,8 @@ struct Looks {
   std::vector<EyeLook> eyes;
 };
 
-/// Saliency of one particle (paper 3.2): at the last level update (Simulation::read_saliency) or in the
-/// present state (Simulation::measure_saliency).
+/// Saliency of one particle (ViP-Fluid 3.2): at the last level update (Simulation::read_saliency) or in the
+/// present state (Simulation::measure_saliency). Equations are those of ViP-Fluid.
 struct ParticleSaliency {
   float acuity = 0;    ///< f_a, visual acuity, Eq. 3
   float manifold = 0;  ///< f_m, curvature of the visible surface, Eq. 5

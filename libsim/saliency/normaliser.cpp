@@ -25,8 +25,8 @@ SIM_FN float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// For each of the two bounds, a histogram of the next 11 bits of all finite values whose higher bits are the
-/// bound's. A value counts 2^level times.
+/// For each of the two bounds, a histogram of the next 11 bits of those finite values whose higher bits are
+/// the ones found for the bound so far (prefix). A value counts 2^level times.
 struct CountBits {
   const float* values;
   const std::uint8_t* level;

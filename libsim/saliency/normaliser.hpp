@@ -1,6 +1,6 @@
 #pragma once
-/// Normalisation of F to s in [0, 1]: bounds of F, smoothed over frames. Paper 3.2.3 does not define the
-/// normalisation.
+/// Normalisation of F, the weighted sum of a particle's saliency features (ViP-Fluid Eq. 1), to s in [0, 1]:
+/// bounds of F, smoothed over frames. ViP-Fluid 3.2.3 does not define the normalisation.
 
 #include <cstdint>
 

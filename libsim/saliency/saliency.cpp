@@ -106,9 +106,10 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
 }
 
 /// Smooths the temporal feature over frames. In water at rest only the excess over `floor` counts; the floor
-/// falls to 0 as the speed rises, so that no level depends on one threshold speed. The floor does not apply
-/// to swirl, because SwirlSeen::from is its floor. A smoothed value that is not finite is replaced by this
-/// frame's value, so that a NaN does not persist.
+/// falls to 0 as the speed rises, so that no level depends on one threshold speed. The floor is not
+/// subtracted from the part by swirl (rotation of the water), which is 0 up to the rate SwirlSeen::from
+/// anyway. A smoothed value that is not finite is replaced by this frame's value, so that a NaN does not
+/// persist.
 struct FollowUnrest {
   const float* now;
   float* unrest;
@@ -131,7 +132,7 @@ float in_one_step(double share, int steps) {
   return static_cast<float>(1 - std::pow(1 - share, std::max(steps, 1)));
 }
 
-/// Measures f_T gamma_t of this frame, and updates its smoothed value.
+/// Measures f_T gamma_t of this frame, the temporal feature before occlusion, and updates its smoothed value.
 void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
   state.temporal.resize(static_cast<std::size_t>(fluid.n));

@@ -1,6 +1,6 @@
 #pragma once
-/// Visual saliency of particles, from eyes and fluid to target levels (paper 3.2): F of each particle (Eq.
-/// 1-3 and 5-8), from it s and the level (Eq. 9), the persistent state, and two ways to compute levels.
+/// Visual saliency of particles, from eyes and fluid to target levels (ViP-Fluid 3.2): F of each particle
+/// (Eq. 1-3 and 5-8), from it s and the level (Eq. 9), the persistent state, and two ways to compute levels.
 
 #include "libsim/methods/level_turns.hpp"
 #include "libsim/methods/method.hpp"
@@ -23,8 +23,8 @@ struct FeatureNumbers {
 };
 FeatureNumbers feature_numbers(const Readings& readings);
 
-/// All features of one particle for one eye; `temporal` is f_T gamma_t. The particle's radius is
-/// r = h / 4.
+/// All features of one particle for one eye. `temporal` is f_T gamma_t: the temporal feature before it is
+/// divided by gamma_t, the occlusion by water in front. The particle's radius is r = h / 4.
 SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec4 particle, float temporal) {
   const Vec3 x = xyz(particle);
   const float r = 0.25f * particle.w;
@@ -65,9 +65,10 @@ struct SaliencyState {
   SaliencyInput input;
   SaliencyNormaliser normaliser;
   TemporalGradients gradients;
-  Eyes eyes;                        ///< for the coming evaluation
-  int frames_since = 0;             ///< frames since the temporal feature was measured; 0: never
-  Array<float> temporal, combined;  ///< f_T gamma_t of this frame only, and F
+  Eyes eyes;             ///< for the coming evaluation
+  int frames_since = 0;  ///< frames since the temporal feature was measured; 0: never
+  /// f_T gamma_t (the temporal feature before occlusion, not smoothed), and F
+  Array<float> temporal, combined;
 
   /// Sets the eyes for the coming frame of dt_s seconds.
   void look_around(double dt_s) { eyes = input.next_frame(dt_s, readings.gaze_hold_s); }
@@ -102,8 +103,8 @@ struct SaliencyFluid {
   int n = 0;
   float finest_support = 0;  ///< h_*, m
   float gravity = 0;         ///< m/s2; without gravity a substitute (FluidState::gravity_of_rest)
-  /// f_T gamma_t smoothed over frames, NaN if unknown; nullptr: no smoothing, only this frame's value is
-  /// used.
+  /// the temporal feature before occlusion (f_T gamma_t), smoothed over frames, NaN if unknown; nullptr: no
+  /// smoothing, only this frame's value is used.
   float* unrest = nullptr;
   SwirlSeen swirl{};  ///< added to `unrest`
   float* saliency = nullptr;
@@ -112,7 +113,8 @@ struct SaliencyFluid {
   Guards* guards = nullptr;
 };
 
-/// s and target levels by Eq. 1-9. Without `unrest` in `fluid` the temporal feature is always measured.
+/// s and target levels by ViP-Fluid Eq. 1-9. Without `unrest` in `fluid` the temporal feature is always
+/// measured.
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid);
 /// s and target levels from the gaze alone (FovFluid-like); the transition band is as wide as the support
 /// radius of the coarsest level.

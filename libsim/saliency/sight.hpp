@@ -1,7 +1,7 @@
 #pragma once
 /// What an eye sees of a particle: its camera, gaze and last picture, visual acuity as a function of
-/// eccentricity and depth (paper Eq. 3-4), the curvature of the surface in front of the particle (Eq. 5) and
-/// its depth below that surface (Eq. 7-8).
+/// eccentricity and depth (ViP-Fluid Eq. 3-4), the curvature of the surface in front of the particle (Eq. 5)
+/// and its depth below that surface (Eq. 7-8).
 
 #include "libsim/exec/vec.hpp"
 #include "libsim/methods/preset.hpp"
@@ -69,7 +69,7 @@ struct Acuity {
     return atan2f(length(across), dot(g, u));
   }
 
-  /// e(theta): 1 within the fovea, decreasing outside.
+  /// Acuity e(theta) at the eccentricity theta, ViP-Fluid Eq. 3: 1 within the fovea, decreasing outside.
   SIM_FN float falloff_at(float theta) const {
     const float beyond = theta - fovea;
     if (beyond <= 0) return 1;
@@ -81,10 +81,11 @@ struct Acuity {
     return 1 / (1 + beyond / e2);
   }
 
-  /// Eq. 4: |x - p_v| / |ints_Pi - p_v| = z / z_Pi by similar triangles.
+  /// ViP-Fluid Eq. 4: |x - p_v| / |ints_Pi - p_v|, the distance of x from the eye p_v divided by that of the
+  /// image plane on the same ray, is z / z_Pi by similar triangles.
   SIM_FN float depth_factor(float z) const { return z / image_plane; }
 
-  /// f_a, Eq. 3, at most 1; 0 behind the viewer.
+  /// Acuity feature f_a, ViP-Fluid Eq. 3, at most 1; 0 behind the viewer.
   SIM_FN float feature(const Eye& eye, Vec3 x, float z) const {
     if (z <= 0) return 0;
     const float quotient = falloff_at(eccentricity(eye, x)) / depth_factor(z);
@@ -102,8 +103,8 @@ struct Acuity {
   }
 };
 
-/// Level of Eq. 9, with the floor function and the clamp that the printed equation lacks. The caller handles
-/// s outside [0, 1] or NaN.
+/// Level of ViP-Fluid Eq. 9, with the floor function and the clamp that the printed equation lacks. The
+/// caller handles s outside [0, 1] or NaN.
 SIM_FN int level_of_saliency(float s, int levels) {
   const int level = static_cast<int>(floorf(static_cast<float>(levels) * (1 - s)));
   return level < 0 ? 0 : level < levels ? level : levels - 1;
@@ -135,10 +136,11 @@ SIM_FN Spot find_spot(const Eye& eye, Vec3 x) {
   return {fluid ? Spot::Kind::Fluid : Spot::Kind::Background, column, row, z};
 }
 
-/// |grad Phi_n| of Eq. 5, dimensionless: the mean of |n(q) - n(p)| over the fluid pixels q of a square window
-/// of half side R = clamp(round(window), 1, most) px around p. At most 64 pixels are read, in a fixed pattern
-/// with equally dense columns and rows. The pixels of the window extend R + 1/2 px from the centre of p; the
-/// last factor corrects for this, so that a surface has the same value at every resolution.
+/// Variation of the surface normal n, |grad Phi_n| of ViP-Fluid Eq. 5, dimensionless: the mean of |n(q) -
+/// n(p)| over the fluid pixels q of a square window of half side R = clamp(round(window), 1, most) px around
+/// p. At most 64 pixels are read, in a fixed pattern with equally dense columns and rows. The pixels of the
+/// window extend R + 1/2 px from the centre of p; the last factor corrects for this, so that a surface has
+/// the same value at every resolution.
 SIM_FN float normal_variation(const GBufferView& g, int x, int y, float window, int most) {
   const Vec3 centre = g.normal_at(x, y);
   if (!(dot(centre, centre) > 0.25f)) return 0;
@@ -165,7 +167,7 @@ SIM_FN float normal_variation(const GBufferView& g, int x, int y, float window, 
   return sum / static_cast<float>(found) * (wanted / (static_cast<float>(reach) + 0.5f));
 }
 
-/// Numerator of Eq. 5 for a particle of radius r; 0 without a fluid pixel.
+/// Numerator of the manifold feature, ViP-Fluid Eq. 5, for a particle of radius r; 0 without a fluid pixel.
 SIM_FN float manifold_feature(const Eye& eye, const Spot& spot, float r, int window_max_px) {
   if (spot.kind != Spot::Kind::Fluid) return 0;
   const float pixels_per_slope = 1 / eye.rays.scale_y;
@@ -173,7 +175,8 @@ SIM_FN float manifold_feature(const Eye& eye, const Spot& spot, float r, int win
   return normal_variation(eye.picture, spot.x, spot.y, window, window_max_px);
 }
 
-/// d_t of Eq. 8 with positive eye depths, m. 0 without a picture or without fluid.
+/// Thickness d_t of the water in front of a particle, ViP-Fluid Eq. 8 with positive eye depths, m. 0 without
+/// a picture or without fluid.
 SIM_FN float thickness(const Eye& eye, const Spot& spot, float r) {
   if (spot.kind != Spot::Kind::Fluid) return 0;
   const float front = eye.picture.depth[eye.picture.at(spot.x, spot.y)];
@@ -184,7 +187,8 @@ struct Attenuation {
   ThicknessWeight reading;
   float per_m;
 
-  /// gamma_t of Eq. 7. Out of view a particle counts as occluded, with the constant 5 of Eq. 7.
+  /// Occlusion gamma_t, ViP-Fluid Eq. 7, for the thickness d_t in m. Out of view a particle counts as
+  /// occluded, with the constant 5 of Eq. 7.
   SIM_FN float operator()(const Spot& spot, float d_t) const {
     if (spot.kind == Spot::Kind::OutOfView) return 5;
     return at(d_t);

@@ -109,7 +109,8 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start);
 void warm_up(FluidState& state, const Scene& scene);
 /// Sets positions and velocities of existing particles, by id. base::Error for an unknown id.
 void put_again(FluidState& state, const std::vector<ParticleState>& particles);
-/// Sets up the scene's jets as they are before `frame`.
+/// Sets up the nozzles, and what each has poured before `frame`. base::Error if the water of a frame would
+/// begin above the lid.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
 /// base::Error if foam particles are so small that a frame may create more than an int can count.

@@ -1,6 +1,6 @@
 #pragma once
-/// Turns a Demand into a Schedule: selects the required stages in their fixed order, and checks that each
-/// column is written before it is read.
+/// Turns a Demand, the requirements of a scene, a method and the outputs, into a Schedule: selects the
+/// required stages in their fixed order, and checks that each column is written before it is read.
 
 #include <string>
 #include <vector>

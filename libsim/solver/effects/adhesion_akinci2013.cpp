@@ -63,8 +63,8 @@ struct Adhesion {
   Vec4* velocity;
   float held;      ///< dt sigma / rho_0 times the square of min(work / sigma, 1), m3/s
   float strength;  ///< dt w / rho_0 times pull_share, w = max(work - sigma, 0), m3/s
-  float whole;     ///< integral of A from 1/2 to 1
-  float per_g;     ///< 1 / G
+  float whole;     ///< integral of the published attraction A(q) over q from 1/2 to 1
+  float per_g;     ///< 1 / G, G = int_0^1 q g(q) dq: scales the attraction to the additional work w
   float widest;    ///< largest support of particles on which the effect acts, m
 
   SIM_FN void operator()(int i) const {
@@ -113,8 +113,8 @@ struct Adhesion {
     return poly6_behind * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
   }
 
-  /// The function g(q). With 4 q - 3 = sin t, A dq = cos^(3/2) t dt / (4 sqrt 2), which is integrated over t
-  /// by Simpson's rule.
+  /// The function g(q) = q int_q^1 A, the attraction A of wall samples summed over a plane. With 4 q - 3 =
+  /// sin t, A dq = cos^(3/2) t dt / (4 sqrt 2), which is integrated over t by Simpson's rule.
   SIM_FN float sampled(float q) const {
     if (q <= 0.5f) return q * whole;
     return q * beyond(q);

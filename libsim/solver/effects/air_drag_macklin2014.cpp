@@ -6,9 +6,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v decreases at the rate k e_i, with e = (1 - rho / rho_0) / (1 - rho_alone / rho_0) the exposed share of
-/// the particle: 1 for a drop of one particle of any size, 0 inside the water. The step is exact for a
-/// constant e, so that a lone drop reaches the terminal speed g / k.
+/// v decreases at the rate k e_i, with k the effect's coefficient, 1/s, and e = (1 - rho / rho_0) / (1 -
+/// rho_alone / rho_0) the exposed share of the particle: 1 for a drop of one particle of any size, 0 inside
+/// the water. The step is exact for a constant e, so that a lone drop reaches the terminal speed g / k.
 struct AirDrag {
   const float* density;
   const std::uint8_t* level;

@@ -11,11 +11,12 @@ namespace {
 
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
-/// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
-/// so that momentum is conserved. hbar is the mean support of a pair. The force of a pair is
-/// proportional to sigma hbar, and the tension of a surface is sigma per length at every particle size. Pairs
-/// with unsolved particles are skipped: no pressure of an unsolved particle would balance the attraction, and
-/// it would not receive the reaction. Pairs with particles too coarse for the effect are skipped too.
+/// the forces of the energies of missing density and of |n|^2, with n the surface normal and s = skin(rho /
+/// rho_0). Both are antisymmetric, so that momentum is conserved. V is a volume, hbar the mean support of a
+/// pair. The force of a pair is proportional to the tension sigma times hbar, and the tension of a surface is
+/// sigma per length at every particle size. Pairs with unsolved particles are skipped: no pressure of an
+/// unsolved particle would balance the attraction, and it would not receive the reaction. Pairs with
+/// particles too coarse for the effect are skipped too.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;

@@ -66,7 +66,7 @@ struct Slide {
   const Vec4* position;
   Vec4* velocity;
   Boundary boundary;
-  float way;     ///< c dt, m
+  float way;     ///< c dt, m, with c the effect's coefficient, m/s
   float widest;  ///< largest support of particles on which the effect acts, m
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];

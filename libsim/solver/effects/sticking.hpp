@@ -7,11 +7,12 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Rows of bodies in the system of equations that the particles solve. A free body is an unknown of this
-/// system, so that fluid and body are coupled implicitly, even if the body is light. Every step of the
-/// conjugate gradients then conserves the total momentum and angular momentum. Rows of other bodies take the
-/// same steps, but do not count in the inner products: they record exactly the momentum that the fluid lost.
-/// Without rows, moves() is false for every body.
+/// Rows of bodies in the linear system of the implicit viscosity, whose unknowns are the velocities of the
+/// particles (viscosity_weiler2018.cpp). A free body is an unknown of this system too, so that fluid and body
+/// are coupled implicitly, even if the body is light. Every step of the conjugate gradients then conserves
+/// the total momentum and angular momentum. Rows of other bodies take the same steps, but do not count in the
+/// inner products: they record exactly the momentum that the fluid lost. Without rows, moves() is false for
+/// every body.
 struct BodyRows {
   BodyRow* rows;
   const Body* bodies;
@@ -23,8 +24,9 @@ struct BodyRows {
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
-  /// The particles' sums for the residual, or for A p, of body b, as velocity and angular velocity if it is
-  /// free, otherwise as momentum and moment. Resets the sums.
+  /// The particles' sums for body b, as velocity and angular velocity if it is free, otherwise as momentum
+  /// and moment. They belong to the residual or to A p, with A the system's matrix and p the search
+  /// direction. Resets the sums.
   SIM_FN BodyTurn given(int b) const {
     BodyRow& row = rows[b];
     const Vec3 push = unit * row.push.value(), moment = unit * row.moment.value();

@@ -115,7 +115,7 @@ struct Friction {
   Neighbours neighbours;
   Images images;
   Bodies bodies;
-  float rate;  ///< c nu dt, m2
+  float rate;  ///< pair_rate times the viscosity nu times dt, m2
   Vec4* residual;
   Vec4* direction;
   Vec4* bent;    ///< A times direction

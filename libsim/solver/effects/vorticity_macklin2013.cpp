@@ -6,13 +6,13 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Share of |omega|. If h times the gradient of |omega| is smaller than this share, the gradient's direction
-/// is uncertain, and the confinement is weakened.
+/// Share of |omega|, the length of a particle's curl of the velocity. If h times the gradient of |omega| is
+/// smaller than this share, the gradient's direction is uncertain, and the confinement is weakened.
 constexpr float least_slope = 0.03f;
 
-/// The mean of omega over the neighbours and the particle, weighted by poly6's slope over distance; its
-/// length in w. The curls of single particles are noisy, most where levels meet, and the gradient of noisy
-/// values has a random direction.
+/// The mean of omega, the curl of the velocity, over the neighbours and the particle, weighted by poly6's
+/// slope over distance; its length in w. The curls of single particles are noisy, most where levels meet, and
+/// the gradient of noisy values has a random direction.
 struct Smooth {
   static constexpr int sums = 4;
   static constexpr bool of_all = false;

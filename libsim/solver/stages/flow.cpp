@@ -102,8 +102,8 @@ struct CountTargets {
   }
 };
 
-/// Median target, by mass, of the water within one diameter of the mouth; without water, the previous
-/// level.
+/// Median target level, by mass, of the water within one diameter of the mouth; without water there, the
+/// present Jets::level.
 int median_target(FluidState& state, NozzleColumns p, const Nozzle& nozzle) {
   const auto f = [](double value) { return static_cast<float>(value); };
   Array<int>& mass = state.jets.mass_by_target;

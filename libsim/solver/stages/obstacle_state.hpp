@@ -12,14 +12,16 @@ struct ObstacleState {
   std::vector<Obstacle> obstacles;
   double frame_begin_s = 0;  ///< time at the frame's beginning, since frame 0
   Array<Body> bodies;        ///< positions at the end of this substep
-  /// Pushes in this frame: first the pushes of the density constraint, one per body, then the pushes of
-  /// effects. The array is empty if the obstacles' pushes are not recorded.
+  /// The bodies' pushes on the water in this frame: first one sum per body of all pushes except those of
+  /// effects, then one sum per body of those of effects. The array is empty if the obstacles' pushes are not
+  /// recorded.
   Array<BodySum> sums;
   /// First the patches of the gauges on obstacles, then one patch for each whole body. The array is empty if
   /// no gauge is on an obstacle.
   Array<BodyPatch> patches;
   Array<PatchSum> patch_sums;  ///< sums of this frame, one per patch
-  /// Volume of each body below the water level, in volumes of m_* times CellWater::fixed_point.
+  /// Volume of each body below the water level, in fixed point: a particle of level 0 has the volume
+  /// CellWater::fixed_point.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
   Array<BodyRow> rows;   ///< one per body; empty until the effect viscosity needs them

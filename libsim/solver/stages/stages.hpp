@@ -230,8 +230,8 @@ void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, 
 /// Corrects the coarse pressure's move from Predicted to PredictedNext, so that its total equals the push of
 /// walls and obstacles, and stops particles at the walls. Afterwards both columns contain the same positions.
 void balance_push(FluidState& state, ClampView particles);
-/// Weight of a push of this projection, including the shares of it that later projections repeat as
-/// momentum steps.
+/// Factor on a recorded push of this projection: 1 plus the shares of it that the substep's later projections
+/// add again, because each repeats the share SolverParameters::momentum of the step before.
 float times_taken(const SolverParameters& parameters, int iteration);
 
 /// The two halves of one projection that moves only the particles `few`. All other particles need lambda = 0

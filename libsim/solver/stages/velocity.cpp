@@ -15,7 +15,9 @@ struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  Vec4* kick;  ///< output: velocity change, for RestingWater; nullptr if nothing splits or merges
+  /// output: velocity change in the substep, which RestingWater filters near new particles; nullptr if
+  /// nothing splits or merges
+  Vec4* kick;
   Brake brake;
   float dt;
   Calm still;            ///< criterion of rest for the finest particles

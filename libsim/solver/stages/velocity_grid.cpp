@@ -99,8 +99,8 @@ using VelocityGridColumns =
                        Column::Rest, Column::StartCell),
                columns(Column::Velocity, Column::Position, Column::Rest)>;
 
-/// Computes V, the changes that unsolved particles inherit, and the sparse marks: one launch over the
-/// particles, one over the cells' sums.
+/// Computes the mean velocities V, the changes that unsolved particles inherit, and the marks of particles of
+/// low density: one launch over the particles, one over the cells' sums.
 void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
   const bool changes = !state.all_active && a.rules.inherit_change;

@@ -89,7 +89,8 @@ void record_held_back(FluidState& state, MovingView p) {
 SIM_FN float beside_bodies(const Walls&, Vec3, float) { return 1; }
 SIM_FN float beside_bodies(const Solids& solids, Vec3 x, float h) { return solids.beside_bodies(x, h); }
 
-/// Records Delta p_i = w_i lambda_i grad_i C_wall of the next displacement, for each wall.
+/// Records, for each wall, its part of the next displacement: Delta p_i = w_i lambda_i grad_i C_wall, with w
+/// = 1 / m and C_wall the wall's part of the kernel's share behind walls and obstacles.
 template <class Boundary>
 struct MissingDensity {
   const Vec4* predicted;
@@ -109,7 +110,8 @@ struct MissingDensity {
   }
 };
 
-/// Records Delta p_i = w_i lambda_i grad_i C_body of the next displacement, for each body.
+/// Records, for each body, its part of the next displacement: Delta p_i = w_i lambda_i grad_i C_body, with w
+/// = 1 / m and C_body the body's part of the kernel's share behind walls and obstacles.
 struct MissingInBodies {
   const Vec4* predicted;
   const float* lambda;
