@@ -43,8 +43,9 @@ struct TemporalOptions {
   std::optional<double> fixed_tau;
   std::optional<FrameRate> fixed_rate;  ///< constant mean mu and standard deviation delta of the frame rate,
                                         ///< from which tau follows
-  stats::PtpeModel model;               ///< gives tau and beta, Eq. 11
-  std::uint32_t seed = 1;               ///< for the random choice of active particles
+  /// gives the tolerance tau and the lowest probability beta that a particle is solved, ViP-Fluid Eq. 11
+  stats::PtpeModel model;
+  std::uint32_t seed = 1;  ///< for the random choice of active particles
   bool always = false;  ///< accelerate methods without temporal acceleration too, for tests and comparisons
 };
 
@@ -123,7 +124,8 @@ struct LevelEvents {
   std::uint64_t split_deferred = 0;  ///< particle-turns in which Readings::split_share delayed a split
   /// particle-turns in which no children fitted between the walls and obstacles
   std::uint64_t split_at_wall = 0;
-  std::uint64_t split_no_room = 0;  ///< particle-turns in which a split exceeded the capacity
+  /// particle-turns (particles times updates of the levels) in which a split exceeded the capacity
+  std::uint64_t split_no_room = 0;
   /// particle-turns in which a particle found no partner, and at least one candidate was refused because the
   /// merged particle would overlap a coarser particle or an obstacle
   std::uint64_t merge_overlap = 0;

@@ -82,9 +82,9 @@ constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
 /// State of temporal acceleration. The velocities and energies of both grids, the range that normalises the
-/// importance, the slots of the last substep, and the flags columns_set and all_marked last from frame to
-/// frame. Rules, beta, seed and frame are inputs. All other members are rebuilt in each frame that needs
-/// them.
+/// importance, the members slots and slot_of of the last substep, and the flags columns_set and all_marked
+/// last from frame to frame. Rules, beta, seed and frame are inputs. All other members are rebuilt in each
+/// frame that needs them.
 struct Activation {
   ActivationRules rules;
   float beta = 1;  ///< lowest probability that a particle is solved; 1 = all particles are solved

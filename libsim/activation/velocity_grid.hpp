@@ -13,8 +13,8 @@ namespace sim::SIM_BACKEND {
 
 constexpr int grid_levels = 4;
 
-/// Mass (in m_*) and momentum (in m_* m/s times 2^20) of the particles of one cell and level, in fixed point,
-/// so that the order of addition does not matter.
+/// Mass (in m_*, the mass of a particle of level 0) and momentum (in m_* m/s times 2^20) of the particles of
+/// one cell and level, in fixed point, so that the order of addition does not matter.
 struct MomentumSum {
   std::uint64_t mass, x, y, z;
 };

@@ -88,7 +88,8 @@ struct LevelCounts {
   std::uint64_t split_deferred;  ///< particle-turns in which LevelRules::split_share delayed a split
   /// particle-turns in which no children fitted between the walls and obstacles
   std::uint64_t split_at_wall;
-  std::uint64_t split_no_room;  ///< particle-turns in which a split exceeded the capacity
+  /// particle-turns (particles times updates of the levels) in which a split exceeded the capacity
+  std::uint64_t split_no_room;
   /// particle-turns in which a particle found no partner, and at least one candidate was refused because the
   /// merged particle would overlap a coarser particle or an obstacle
   std::uint64_t merge_overlap;
@@ -110,7 +111,7 @@ using NewLevelsView = ColumnView<columns(Column::Level),
 struct LevelState {
   LevelRules rules;
   TargetSphere forced;
-  std::uint32_t frame = 0;  ///< number of past turns; part of the key of the random numbers
+  std::uint32_t frame = 0;  ///< number of past updates of the levels; part of the key of the random numbers
   LevelTurns turns;         ///< the frames that update saliency, splits and merges
   /// a particle split or merged in this frame, or could have split but for the capacity
   bool changed = false;
@@ -139,8 +140,8 @@ struct LevelState {
   Array<int> flags, sums;
   Array<std::uint64_t> keys;  ///< keys of splits for sorting by priority
   Array<int> free_ids;        ///< ids that no particle uses, ascending
-  /// slots of the particles that are moved apart after splits and merges (LevelRules::partings), and their
-  /// number
+  /// slots (particles/selection.hpp) of the particles that are moved apart after splits and merges
+  /// (LevelRules::partings), and their number
   Array<int> beside, beside_count;
   // Relays (relay.cpp) reuse memory. The two particles for which a relay bids are stored in `births` and
   // `places`, which compact() overwrites later in the frame. The best bids are stored in `keys`, which splits

@@ -14,9 +14,10 @@ enum class Preset { Paper, Tuned };
 Preset parse_preset(std::string_view name);
 std::string preset_name(Preset preset);
 
-/// Eq. 3: decrease of acuity beyond the fovea's rim at theta_f. Hyperbolic: 1 / (1 + (theta - theta_f) / 2.3
-/// deg), like letter acuity (Strasburger et al. 2011). Steep: the same with 0.85 deg, from the slope of the
-/// minimum angle of resolution in Guenter et al. 2012. Smoothstep: to 0 at 30 deg.
+/// ViP-Fluid Eq. 3: decrease of acuity with the eccentricity theta beyond the fovea's rim at theta_f.
+/// Hyperbolic: 1 / (1 + (theta - theta_f) / 2.3 deg), like letter acuity (Strasburger et al. 2011). Steep:
+/// the same formula with 0.85 deg, from the slope of the minimum angle of resolution in Guenter et al. 2012.
+/// Smoothstep: to 0 at 30 deg.
 enum class AcuityFalloff { Hyperbolic, Steep, Smoothstep };
 /// Eq. 6: distance over which gradients are measured. OneSupport: the support h_i, so the solver's
 /// neighbours. Smoothed: h_i; the values are averaged over the support before the gradients are computed,
@@ -26,15 +27,16 @@ enum class GradientReach { OneSupport, Smoothed, TwoSupports };
 /// Eq. 7: gamma_t, by which the temporal feature of a particle under water of thickness d, in m, is divided.
 /// Min: min(e^(d/2), 5), which distinguishes thicknesses up to 3.2 m. Max: max(e^(d/2), 5), as printed.
 enum class ThicknessWeight { Min, Max };
-/// Eq. 9: the range of F that maps to s = 0 .. 1. Percentile: from the 1st to the 98th percentile by mass,
-/// smoothed over frames. MinMax: from the frame's minimum to its maximum. Also selects the range of the
-/// importance of Eq. 12 (ActivationRules::robust_range).
+/// ViP-Fluid Eq. 9: the range of F, the weighted sum of the saliency features, that maps to the saliency s =
+/// 0 .. 1. Percentile: from the 1st to the 98th percentile by mass, smoothed over frames. MinMax: from the
+/// frame's minimum to its maximum. Also selects the range of the importance of Eq. 12
+/// (ActivationRules::robust_range).
 enum class Normalisation { Percentile, MinMax };
 
 /// All switches. Comments name the paper's equation if the switch belongs to one. d_* is the diameter of the
 /// finest particles. Without gravity, 0.01 d_* per frame replaces the speed sqrt(g d_*) in Eq. 6, 13 and 14.
 struct Readings {
-  // Eq. 1-9: saliency
+  // ViP-Fluid Eq. 1-9: saliency
   double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature
   AcuityFalloff falloff = AcuityFalloff::Hyperbolic;
   double fovea_half_angle_deg = 7.5;
@@ -45,17 +47,18 @@ struct Readings {
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
   bool hide_manifold_behind = false;                 ///< f_m of Eq. 5 is divided by gamma_t of Eq. 7
   GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6: reach of the gradients
-  /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. Smaller weights
-  /// cause fewer splits in still water.
+  /// ViP-Fluid Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing.
+  /// Smaller weights cause fewer splits in still water.
   double temporal_follow = 0.2;
   /// Minimum number of frames between two measurements of the temporal feature and of the range of Eq. 9. The
-  /// smoothing then takes one step for each frame that passed. Acuity and manifold are measured in every turn
-  /// of the levels. >= 1
+  /// smoothing then takes one step for each frame that passed. Acuity and manifold are measured in every
+  /// update of the levels. >= 1
   int temporal_period_frames = 2;
   /// Eq. 6: gradients are multiplied by h_i, which makes them dimensionless; false: they stay in 1/m.
   bool dimensionless = true;
-  /// Eq. 6: speed_floor is epsilon_v as a share of sqrt(g d_*), density_floor is epsilon_rho as a share of
-  /// rho_0. Without these floors, the jitter that splits and merges cause in still water would be salient.
+  /// Eq. 6: speed_floor is epsilon_v as a share of sqrt(g d_*), d_* being the diameter of the finest
+  /// particles; density_floor is epsilon_rho as a share of rho_0. Without these floors, the jitter that
+  /// splits and merges cause in still water would be salient.
   double speed_floor = 1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
@@ -63,11 +66,12 @@ struct Readings {
   /// calm_viscosity weaken as the speed rises to this limit. calm_floor and calm_dead_band apply in full up
   /// to about this speed and fall to 0 at 1.5 times it.
   double calm_speed = 0.65;
-  /// Eq. 6: in water at rest this value is subtracted from the temporal feature, down to 0 at least, before
-  /// gamma_t divides the feature. Otherwise the motion that splits and merges cause would trigger further
-  /// splits. Simulation::measure_saliency does not subtract it.
+  /// ViP-Fluid Eq. 6: in water at rest this value is subtracted from the temporal feature, down to 0 at
+  /// least, before the occlusion gamma_t (Eq. 7) divides the feature. Otherwise the motion that splits and
+  /// merges cause would trigger further splits. Simulation::measure_saliency does not subtract it.
   double calm_floor = 0.3;
-  /// Eq. 9: lower limit of the F that maps to s = 1; if all F are smaller, no particle has s = 1
+  /// Eq. 9: lower limit of the F (sum of features) that maps to s = 1; if all F are smaller, no particle has
+  /// the saliency s = 1
   double saliency_floor = 0.1;
   /// Duration for which a lost gaze keeps its last direction, before it follows the view's axis; a blink
   /// lasts 0.1 to 0.4 s.
@@ -84,8 +88,9 @@ struct Readings {
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for every split.
   double split_offset[3] = {0.794, 1.09, 0.866};
-  /// Maximum share of the particles that may split in one turn. If it is below 1, two particles within one
-  /// spacing of each other also do not split in the same turn. 1 = neither limit applies.
+  /// Maximum share of the particles that may split in one turn, an update of the levels. If it is below 1,
+  /// two particles within one spacing of each other also do not split in the same turn. 1 = neither limit
+  /// applies.
   double split_share = 0.05;
   /// Two particles merge only if their target levels are equal; false: both targets only need to be coarser
   /// than the particles.
@@ -101,9 +106,9 @@ struct Readings {
   /// merged particle. The level of a neighbour that has long waited to merge does not count
   /// (LevelRules::lags).
   bool merge_keeps_steps = true;
-  /// A particle becomes coarser only if N (1 - s) of Eq. 9 exceeds the next coarser level by at least this
-  /// number. So a particle whose s varies about the border of two levels does not alternately split and
-  /// merge. [0, 1)
+  /// A particle becomes coarser only if N (1 - s) of ViP-Fluid Eq. 9 exceeds the next coarser level by at
+  /// least this number. So a particle whose s varies about the border of two levels does not alternately
+  /// split and merge. [0, 1)
   double merge_dead_band = 0.7;
   /// Added to merge_dead_band for particles at rest: in full up to about the limit speed of calm_speed,
   /// falling to 0 at 1.5 times it. Each merge stirs still water a little, and stirred water splits and merges
@@ -125,10 +130,10 @@ struct Readings {
   /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
   int longest_rest_frames = 1;
   /// Minimum number of consecutive frames in which a particle is solved after inactive frames; without effect
-  /// if longest_rest_frames is 0. The centre of mass of a dam at beta 0.3 was compared with a full solve for
-  /// 10 s (docs/decisions.md). With least_work_frames = 2 it deviated by 1.3 to 1.9 % of its height, and 82 %
-  /// of the particles were solved. With 1 it deviated by 2.0 to 2.2 %, and 76 % were solved.
-  /// longest_rest_frames + least_work_frames <= 14.
+  /// if longest_rest_frames is 0. The centre of mass of a dam at beta = 0.3 (the lowest probability that a
+  /// particle is solved) was compared with a full solve for 10 s (docs/decisions.md). With least_work_frames
+  /// = 2 it deviated by 1.3 to 1.9 % of its height, and 82 % of the particles were solved. With 1 it deviated
+  /// by 2.0 to 2.2 %, and 76 % were solved. longest_rest_frames + least_work_frames <= 14.
   int least_work_frames = 2;
   /// Inactive particles add the mean velocity change of the solved particles in their cell; false: they take
   /// the mean velocity.
@@ -137,12 +142,12 @@ struct Readings {
   /// only the remaining velocity change; false: their velocity is constant within the frame. Needs
   /// inherit_change.
   bool inactive_pressed = true;
-  /// Edge of the cells for inherited changes, in d_*; the paper's cells for mean velocity and kinetic energy
-  /// have an edge of 10 d_*.
+  /// Edge of the cells for inherited changes, in diameters d_* of the finest particles; the paper's cells for
+  /// mean velocity and kinetic energy have an edge of 10 d_*.
   double inherit_cell_spacings = 5;
   /// In each frame, after the inherited change, an inactive particle's velocity v becomes v +
-  /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell. Without effect if
-  /// inherit_change is false.
+  /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell and beta the lowest
+  /// probability that a particle is solved. Without effect if inherit_change is false.
   double inactive_damping = 0.25;
   /// In the denominator of lambda, the multiplier of the density constraint, inactive particles count as if
   /// they could move; false: as if their mass were infinite.

@@ -81,7 +81,7 @@ class NeighbourList {
   /// CPU this is the grid's order. Lists beyond the capacity go to the store; neighbours that do not fit
   /// there either are dropped and reported to the witness.
   void build(PredictedView particles, const Grid& grid, Witness witness);
-  /// Lists the neighbours of the active particles only, one list per slot.
+  /// Lists the neighbours of the active particles only, one list per slot (particles/selection.hpp).
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
   /// Lists the neighbours of all particles, active or not, one list per slot.
   void build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);

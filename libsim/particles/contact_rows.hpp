@@ -15,7 +15,8 @@ struct BodyRate {
   float ease;     ///< 1 / mass, 1/m_*; 0: immovable
 };
 
-/// One equation of a contact: a direction along which its two bodies push each other.
+/// One equation of a contact: a direction along which its two bodies push each other. m_* is the mass of a
+/// particle of level 0.
 struct ContactRow {
   int first, second;        ///< indices of the bodies; second < 0: a wall
   Vec3 way;                 ///< unit vector, towards the first body

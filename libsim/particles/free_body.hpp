@@ -6,7 +6,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Dynamic state of a body; its position is in Body.
+/// Dynamic state of a body; its position is in Body. m_* is the mass of a particle of level 0.
 struct FreeBody {
   float mass;     ///< m_*; 0: the body is not free
   float volume;   ///< in units of the volume m_* / rho_0
@@ -32,7 +32,8 @@ struct BodyTurn {
 /// A body in a system of equations for velocities, solved by conjugate gradients
 /// (libsim/solver/effects/sticking.hpp). gained: the solution so far. residual, direction, and bent = A
 /// direction: vectors of the conjugate gradients, with the system's matrix A. For a body that is not free,
-/// each BodyTurn contains momentum, m_* m/s, and its moment, m_* m2/s, instead.
+/// each BodyTurn contains momentum, in m_* m/s with m_* the mass of a particle of level 0, and its moment,
+/// m_* m2/s, instead.
 struct BodyRow {
   BodyTurn gained, residual, direction, bent;
   /// momentum, and its moment about the centre, received from particles in one pass, in BodyRows::unit
@@ -58,7 +59,8 @@ SIM_FN Vec3 spin_of(const FreeBody& free, Vec4 turn, Vec3 momentum) {
   return turned(turn, {own.x / free.inertia.x, own.y / free.inertia.y, own.z / free.inertia.z});
 }
 
-/// Angular momentum for an angular velocity at this attitude, m_* m2/s; inverse of spin_of().
+/// Angular momentum for an angular velocity at this attitude, m_* m2/s with m_* the mass of a particle of
+/// level 0; inverse of spin_of().
 SIM_FN Vec3 momentum_of(const FreeBody& free, Vec4 turn, Vec3 spin) {
   const Vec3 own = turned(turned_back(turn), spin);
   return turned(turn, {own.x * free.inertia.x, own.y * free.inertia.y, own.z * free.inertia.z});

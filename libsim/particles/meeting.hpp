@@ -27,7 +27,9 @@ struct Meeting {
   FreeBody* free;
   const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
   const float* friction;   ///< friction coefficient of each body
-  Vec3* by_others;         ///< momentum that each body received from other bodies in this frame, m_* m/s
+  /// momentum that each body received from other bodies in this frame, m_* m/s with m_* the mass of a
+  /// particle of level 0
+  Vec3* by_others;
   Walls walls;
   BodyDrive drive;
   float spacing;  ///< of the finest particles, m
@@ -141,9 +143,10 @@ struct Meeting {
       for (int b = 0; b < m.count; ++b) out = at_least(room.speeds[b], out);
       return out;
     }
-    /// Upper bound of the push between two bodies, m_* m/s. In a wedge of half angle a pushes grow as 1 / (2
-    /// sin a); the bound suffices down to 2 degrees. Pushes from walls have no bound and come last in each
-    /// sweep, so that a body pinned between bodies and a wall stays in the tank.
+    /// Upper bound of the push between two bodies, m_* m/s with m_* the mass of a particle of level 0. In a
+    /// wedge of half angle a pushes grow as 1 / (2 sin a); the bound suffices down to 2 degrees. Pushes from
+    /// walls have no bound and come last in each sweep, so that a body pinned between bodies and a wall stays
+    /// in the tank.
     SIM_FN float most_push(float speed) const {
       float mass = 0;
       for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;

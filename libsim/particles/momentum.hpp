@@ -54,7 +54,7 @@ using Momentum = MassSum<24>;
 /// Sum of mass times displacement within a substep, in m_* m.
 using MassWay = MassSum<36>;
 
-/// Mass of a particle of support h in m_*.
+/// Mass of a particle of support h in m_*, the mass of a particle of level 0.
 SIM_FN float mass_units_of(float h, float finest_support) {
   const float ratio = h / finest_support;
   return ratio * ratio * ratio;

@@ -150,8 +150,8 @@ struct Body {
 
 inline constexpr int most_bodies = 16;
 
-/// Sum of a body's pushes on the water: mass in m_* times displacement in m, and the moment about the body's
-/// centre in m_* m2.
+/// Sum of a body's pushes on the water: mass in m_* (the mass of a particle of level 0) times displacement in
+/// m, and the moment about the body's centre in m_* m2.
 struct BodySum {
   MassWay push, moment;
 };
@@ -216,7 +216,8 @@ struct BodyListener {
   float times;
   BodyPatches patches;
 
-  /// Adds the push (m_* m) of a body on a particle; it acts at the position `at`.
+  /// Adds the push of a body (mass in m_*, as BodySum, times displacement in m) on a particle; it acts at the
+  /// position `at`.
   SIM_FN void add(int body, Vec4 particle, Vec3 at, Vec3 push) const {
     BodySum sum{};
     add_to(sum, body, at, push);

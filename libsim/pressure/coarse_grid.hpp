@@ -36,7 +36,8 @@ struct PressureFrame {
 };
 
 /// The displacement of all particles by the coarse pressure, and the displacement that the push of walls and
-/// obstacles alone would cause. Both are sums of mass in m_* times displacement in m.
+/// obstacles alone would cause. Both are sums of mass in m_* (the mass of a particle of level 0) times
+/// displacement in m.
 struct PushBalance {
   MassWay pushed, walls;
   std::uint64_t mass;  ///< mass of the particles that were pushed, in m_*

@@ -12,7 +12,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Constants of Eq. 1-8 in the form that kernels use.
+/// Constants of ViP-Fluid Eq. 1-8 in the form that kernels use.
 struct FeatureNumbers {
   Acuity acuity;
   Attenuation attenuation;
@@ -82,11 +82,11 @@ struct SaliencyState {
 };
 
 /// Contribution of the water's rotation to saliency: a particle's share is 0 up to the rate `from`, 1/s, and
-/// reaches 1 at twice this rate. Not in the paper: its temporal feature has no such term.
+/// reaches 1 at twice this rate. Not in ViP-Fluid: its temporal feature has no such term.
 struct SwirlSeen {
   const float* rate = nullptr;  ///< rate of rotation of each particle, 1/s; nullptr: no contribution
   float from = 0;
-  float weight = 0;  ///< added to f_T gamma_t at a share of 1
+  float weight = 0;  ///< added to the temporal feature before occlusion (f_T gamma_t) at a share of 1
 
   SIM_FN float adds(int i) const {
     return weight * fminf(fmaxf(rate[i] - from, 0.0f) / fmaxf(from, 1e-6f), 1.0f);

@@ -290,7 +290,7 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  /// tau, mu, delta and beta of temporal acceleration in the frame that ends; none in a run without it.
+  /// Report of temporal acceleration (ViP-Fluid Eq. 11) in the frame that ends; none in a run without it.
   std::optional<TemporalReport> went_by() const {
     if (!traits_of(options_.method).temporal && !options_.temporal.always) return {};
     return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};

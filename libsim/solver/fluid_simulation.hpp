@@ -102,7 +102,8 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
 /// The finest and the coarsest level that particles may have in a run that does not resume: the levels of its
 /// start, of water from nozzles, and of particles that split and merge.
 std::pair<int, int> levels_at_start(const Scene& scene, const SimulationOptions& options);
-/// Copies the particles of a start into the allocated columns, and sums their mass in m_*.
+/// Copies the particles of a start into the allocated columns, and sums their mass in m_*, the mass of a
+/// particle of level 0.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
 /// Sets the temperatures at frame 0 from the scene's boxes, and an empty heat ledger; does nothing if no
 /// stage needs temperatures.

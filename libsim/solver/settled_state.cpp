@@ -22,7 +22,8 @@ constexpr std::size_t digest_size = 64;
 constexpr const char* solver_digest =
 #include "solver_digest.inc"
     ;
-// Largest file: the digest and 8 n_* particles of 32 bytes, with n_* = 4M.
+// Largest file: the digest and 8 n_* particles of the finest level, each of 32 bytes, with the largest n_*,
+// 4M.
 constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_size;
 constexpr std::chrono::hours forgotten_after{30 * 24};
 static_assert(std::is_trivially_copyable_v<ParticleState> && sizeof(ParticleState) == 32);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view magic = "ViP-Lab state\n";
 constexpr std::size_t digest_size = 64;
 constexpr std::size_t head_size = magic.size() + sizeof(std::int32_t) + 2 * digest_size;
-// Largest file: 8 n_* particles of 250 bytes, with n_* = 4M.
+// Largest file: 8 n_* particles of the finest level, each of 250 bytes, with the largest n_*, 4M.
 constexpr std::size_t most_bytes = std::size_t{250} * 8 * (4u << 20);
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& problem,

@@ -9,10 +9,10 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// A wall brakes water that slides along it at the speed u with the stress rho_0 c u (Navier's law of slip;
-/// nu / c is its slip length), so that a sheet of depth H slides a distance u H / c. The stress acts on the
-/// layer of particles within their spacing d of the wall, in which u decreases at the rate c / d. This layer
-/// has one particle per area d^2, in a lattice and in disordered water, at every level. A substep removes at
-/// most all of u, and so is stable for any step; a large c stops the layer.
+/// with the viscosity nu, nu / c is its slip length), so that a sheet of depth H slides a distance u H / c.
+/// The stress acts on the layer of particles within their spacing d of the wall, in which u decreases at the
+/// rate c / d. This layer has one particle per area d^2, in a lattice and in disordered water, at every
+/// level. A substep removes at most all of u, and so is stable for any step; a large c stops the layer.
 SIM_FN Vec3 slowed(Vec3 v, Vec3 wall_velocity, Vec3 normal, float steps) {
   const Vec3 slip = v - wall_velocity;
   return v - at_most(steps, 1.0f) * (slip - dot(slip, normal) * normal);

@@ -18,9 +18,9 @@ struct BodyRows {
   const Body* bodies;
   const FreeBody* free;  ///< dynamic state of each body; nullptr: no body is free
   int count;             ///< number of rows
-  /// Unit of the fixed-point sums in the rows, m_* m/s. It grows with the stiffest particle's term, because
-  /// residuals and directions exceed the fluid's speeds by up to this factor, and fixed point has a limited
-  /// range.
+  /// Unit of the fixed-point sums in the rows, m_* m/s with m_* the mass of a particle of level 0. It grows
+  /// with the stiffest particle's term, because residuals and directions exceed the fluid's speeds by up to
+  /// this factor, and fixed point has a limited range.
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
@@ -80,12 +80,12 @@ struct BodyRows {
   }
 };
 
-/// The shear stress rho_0 nu u / s acts on fluid within its spacing d of an obstacle's surface; s is the
-/// distance to the surface and u the slip speed. This layer has one particle per area d^2 at every level. The
-/// fluid then comes to rest at the surface itself, in a lattice at any s and in disordered fluid. u is
-/// tangential, relative to the body's rigid motion extended to the particle: fluid that rotates with a body
-/// is not braked. In the implicit step the terms stay symmetric and positive definite: each is the square of
-/// a difference.
+/// The shear stress rho_0 nu u / s, with the kinematic viscosity nu, acts on fluid within its spacing d of an
+/// obstacle's surface; s is the distance to the surface and u the slip speed. This layer has one particle per
+/// area d^2 at every level. The fluid then comes to rest at the surface itself, in a lattice at any s and in
+/// disordered fluid. u is tangential, relative to the body's rigid motion extended to the particle: fluid
+/// that rotates with a body is not braked. In the implicit step the terms stay symmetric and positive
+/// definite: each is the square of a difference.
 struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;

@@ -202,7 +202,7 @@ struct Friction {
   }
 };
 
-/// A particle's part of the inner product: m_i a_i b_i, with m_i in m_*.
+/// A particle's part of the inner product: m_i a_i b_i, with m_i in m_*, the mass of a particle of level 0.
 struct Product {
   const Vec4* position;
   const Vec4* a;

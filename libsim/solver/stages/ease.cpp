@@ -5,8 +5,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Computes the column Ease: the smallest share of its density constraint that a particle enforces, by the
-/// age of the youngest particle within its support (LevelRules::ease). Neighbour lists are indexed by slots.
-/// Unsolved particles get 1.
+/// age of the youngest particle within its support (LevelRules::ease). Neighbour lists are indexed by slots
+/// (particles/selection.hpp). Unsolved particles get 1.
 template <class Selection>
 struct Ease {
   Selection select;

@@ -185,8 +185,8 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;  ///< h_* = 4 r_*, m: h of level 0, even if the method has no particles of level 0
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  /// Mass of the water, in m_*: the mass at the start minus the drained mass. It includes mass that nozzles
-  /// have taken but not yet poured, which is negligible.
+  /// Mass of the water, in m_*, the mass of a particle of level 0: the mass at the start minus the drained
+  /// mass. It includes mass that nozzles have taken but not yet poured, which is negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
   Vec3 refuge{};           ///< new position of particles that are not finite or far outside the tank
@@ -214,7 +214,7 @@ struct FluidState {
   SaliencyState saliency;
   LevelState levels;
   /// False during a frame that does not solve all particles. Passes then run over active(), and lists are
-  /// indexed by slots. True between frames.
+  /// indexed by slots (particles/selection.hpp). True between frames.
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
@@ -245,9 +245,9 @@ struct FluidState {
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
-  /// The gravity g, m/s2, in the speed sqrt(g d_*) that saliency and the particles' importance use as the
-  /// scale of slow motion. Without gravity, a value that makes this speed 0.01 d_* per frame; otherwise the
-  /// smallest motion would count as fast.
+  /// The gravity g, m/s2, in the speed sqrt(g d_*), with the finest spacing d_*, that saliency and the
+  /// particles' importance use as the scale of slow motion. Without gravity, a value that makes this speed
+  /// 0.01 d_* per frame; otherwise the smallest motion would count as fast.
   float gravity_of_rest() const {
     if (parameters.gravity.strength > 0) return parameters.gravity.strength;
     const auto frame = static_cast<float>(parameters.frame_s());

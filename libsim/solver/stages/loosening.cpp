@@ -14,9 +14,10 @@ namespace {
 /// random step, and the next projections correct the density. Velocities do not change, and so momentum is
 /// conserved.
 constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacings
-/// Largest nu dt / d^2 at which steps have the full length `loosening`. A thicker fluid needs shorter steps:
-/// its flow per substep decreases as 1 / nu, and steps loosen the lattice in proportion to their square.
-/// Longer steps would make the fluid swell faster than it flows (docs/decisions.md).
+/// Largest nu dt / d^2, with the viscosity nu and the spacing d, at which steps have the full length
+/// `loosening`. A thicker fluid needs shorter steps: its flow per substep decreases as 1 / nu, and steps
+/// loosen the lattice in proportion to their square. Longer steps would make the fluid swell faster than it
+/// flows (docs/decisions.md).
 constexpr float loosened_in_full = 2;
 template <class Selection>
 struct Loosen {

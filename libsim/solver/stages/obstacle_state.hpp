@@ -30,7 +30,9 @@ struct ObstacleState {
   Array<float> distances;     ///< distance values of all grids
   Array<Vec3> mesh_contacts;  ///< contact points of all meshes
   // Used only if meet(): a free obstacle is present, and there is a second obstacle or one has friction.
-  Array<Vec3> by_others;              ///< momentum that each body received from others in this frame, m_* m/s
+  /// momentum that each body received from others in this frame, m_* m/s with m_* the mass of a particle of
+  /// level 0
+  Array<Vec3> by_others;
   Array<float> friction;              ///< friction coefficient of each body
   bool rough = false;                 ///< true if a friction coefficient is not 0
   int feelers = 0;                    ///< the largest number of contact points on one body

@@ -53,8 +53,8 @@ struct Drive {
   }
 
   /// Sets the velocity of a particle to zero if its velocity or its position is lost. A position is lost if
-  /// it is not finite or farther than `reach` beyond a wall; the particle is then moved to the refuge. Other
-  /// particles never read lost values.
+  /// it is not finite or farther than `reach` beyond a wall; the particle is then moved to a fixed position
+  /// (FluidState::refuge). Other particles never read lost values.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool far_outside = all_finite(x) && tank(walls).nearest(x) < -reach;
     const bool place_lost = far_outside || !all_finite(x);

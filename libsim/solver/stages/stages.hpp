@@ -50,7 +50,7 @@ enum class SharedTerm { None, SurfaceNormals, Curl, Conduction };
 
 struct Stage {
   const char* name;
-  const char* source = "";  ///< paper and equation
+  const char* source = "";  ///< paper and equation that the stage follows
   Phase phase;
   /// Returns the reason why the stage is required, or an empty string. An effect's stage needs no such
   /// function; with one it runs only if the function also requires it.

@@ -56,7 +56,7 @@ struct Xsph {
   const float* density;
   Neighbours neighbours;
   Vec4* next;
-  float spread;  ///< 22 nu dt, m2
+  float spread;  ///< 22 nu dt, m2, with the kinematic viscosity nu
   Filter filter;
 
   /// The particle whose neighbours are summed.
