@@ -126,8 +126,8 @@ struct LevelState {
   Array<std::uint8_t> split_code;           ///< packed SplitCode; 0 = no split
   Array<std::uint8_t> wish;                 ///< 1 = wants to merge
   Array<std::uint8_t> gone;                 ///< 1 = merged into another particle
-  Array<std::uint8_t> graded;               ///< targets that a sweep of the grading writes
-  Array<int> partner;                       ///< proposed merge partner
+  Array<std::uint8_t> graded;  ///< targets written by a sweep that limits neighbours' differences
+  Array<int> partner;          ///< proposed merge partner
   /// number of particles that replace each particle: 2^k if it splits, 0 if it merged into another particle,
   /// else 1
   Array<int> births;

@@ -86,7 +86,8 @@ struct Readings {
   int saccade_frames = 5;
   /// Limit the difference between the target levels of neighbours to one level.
   bool graded_targets = true;
-  /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for every split.
+  /// Distance of the children from the parent's centre, in radii of the parent, for splits into 2^k children,
+  /// k = 1, 2, 3. The paper gives 0.794 for every split.
   double split_offset[3] = {0.794, 1.09, 0.866};
   /// Maximum share of the particles that may split in one turn, an update of the levels. If it is below 1,
   /// two particles within one spacing of each other also do not split in the same turn. 1 = neither limit

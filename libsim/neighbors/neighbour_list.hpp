@@ -58,8 +58,9 @@ struct Neighbours {
   SIM_FN int operator()(int i, int k) const { return run(i)[k]; }
 };
 
-/// Neighbour lists by particle, for the few passes at a frame's start. slot_of: the slot of each particle in
-/// the last substep, to which lists belong; nullptr if slots are particles.
+/// Neighbour lists by particle, for the few passes at a frame's start. slot_of: each particle's slot in the
+/// last substep (particles/selection.hpp), which is the index of its list; nullptr: that is the particle's
+/// own index.
 struct ParticleNeighbours {
   Neighbours list;
   const int* slot_of;
@@ -78,8 +79,8 @@ class NeighbourList {
   static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the same order in every run; on the
-  /// CPU this is the grid's order. Lists beyond the capacity go to the store; neighbours that do not fit
-  /// there either are dropped and reported to the witness.
+  /// CPU this is the grid's order. Lists longer than the capacity go to the store, memory that all lists
+  /// share; neighbours that do not fit there either are dropped and reported to the witness.
   void build(PredictedView particles, const Grid& grid, Witness witness);
   /// Lists the neighbours of the active particles only, one list per slot (particles/selection.hpp).
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
@@ -91,7 +92,7 @@ class NeighbourList {
   std::vector<std::vector<int>> lists() const;
   Neighbours view() const { return {count_.data(), entry_.data(), store_.data(), capacity_}; }
 
-  /// The space in the store that long lists requested.
+  /// The space that long lists requested in the store, memory that all lists share.
   struct Need {
     int longest;           ///< longest list that went to the store since grow() last added space, in entries
     std::uint64_t stored;  ///< store entries requested by the last build

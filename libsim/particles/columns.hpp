@@ -54,7 +54,7 @@ enum class Descent {
 //   Target          level that the particle should have
 //   History         targets of the last four frames, two bits each, the newest lowest
 //   Saliency        s in [0, 1], ViP-Fluid 3.2.3
-//   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
+//   Unrest          temporal feature before occlusion, f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
 //   SaliencyParts   f_a, f_m, f_T and F, from which s follows
 //   Waiting         number of consecutive frames in which the particle was ready to merge
 //   Normal          scratch of the effects (libsim/scene/effects.hpp): normal of the water's surface,
@@ -151,7 +151,7 @@ SIM_COLUMNS(SIM_CHECK, SIM_NOTHING)
 #undef SIM_CHECK
 
 /// kept_count: the number of Kept columns of type T. ruled_count: the number of columns of type T whose rule
-/// is by_rule().
+/// by_rule() accepts.
 template <class T>
 constexpr int kept_count() {
   int sum = 0;

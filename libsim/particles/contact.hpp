@@ -14,8 +14,8 @@ struct Contact {
 };
 
 /// The points of a body that are tested for contacts. Of a sphere, capsule or box: the corners of its inner
-/// box, and on each edge of this box the point nearest to the other body. Each point is the centre of a ball
-/// of the body's radius. Of a mesh: MeshGrid::contacts.
+/// box (half sides Body::half), and on each edge of this box the point nearest to the other body. Each point
+/// is the centre of a ball of the body's radius. Of a mesh: MeshGrid::contacts.
 struct Feelers {
   const Body& body;
   const MeshGrid* mesh;  ///< nullptr: the body is not a mesh

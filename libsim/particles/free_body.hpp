@@ -74,8 +74,8 @@ SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
 }
 
 /// Removes the momentum that would carry a free body through the tank's walls in dt. Contact points are the
-/// corners of the body's inner box, each a ball of its radius, or a mesh's contacts; contacts are inelastic
-/// and frictionless. Outlets let no body through.
+/// corners of the body's inner box (half sides Body::half), each a ball of its radius, or a mesh's contacts;
+/// contacts are inelastic and frictionless. Outlets let no body through.
 struct WallContact {
   /// maximum number of sweeps over all contact points; the first sweep without a push is the last
   static constexpr int sweeps = 8;

@@ -188,10 +188,10 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
 
 namespace {
 
-/// Edge, m, of the cells in which foam's closing speeds are measured: the effect's length, or by default a
-/// sixth of the cube root of the water's volume. At least 1.5 spacings of the coarsest particles that a
-/// method may have at this n_* (the number of particles if all have the coarsest level), and large enough
-/// that the tank has at most MeetingCells::most_cells cells.
+/// Edge, m, of the cells in which foam's closing speeds are measured: the length that the effect's options
+/// give, or by default a sixth of the cube root of the water's volume. At least 1.5 spacings of the coarsest
+/// particles that a method may have at this n_* (the number of particles if all have the coarsest level), and
+/// large enough that the tank has at most MeetingCells::most_cells cells.
 float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
   const float asked = e[EffectOption::FoamLength];
   const float wish = std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(water_volume_m3(scene)) / 6),

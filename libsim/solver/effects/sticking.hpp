@@ -19,8 +19,9 @@ struct BodyRows {
   const FreeBody* free;  ///< dynamic state of each body; nullptr: no body is free
   int count;             ///< number of rows
   /// Unit of the fixed-point sums in the rows, m_* m/s with m_* the mass of a particle of level 0. It grows
-  /// with the stiffest particle's term, because residuals and directions exceed the fluid's speeds by up to
-  /// this factor, and fixed point has a limited range.
+  /// with the largest factor by which a body can brake a particle in a substep (`steps` in
+  /// StickingBodies::each), because residuals and directions exceed the fluid's speeds by up to this factor,
+  /// and fixed point has a limited range.
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }

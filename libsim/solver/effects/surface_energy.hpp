@@ -5,9 +5,9 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Strengths of the two tension terms, attraction (pull) and smoothing, in units of sigma. They were
-/// calibrated together with the oscillation period of one drop of level 0 (docs/decisions.md). Tests measure
-/// sigma from other cases.
+/// Strengths of the two tension terms, attraction (pull) and smoothing, in units of the tension sigma. They
+/// were calibrated together with the oscillation period of one drop of level 0 (docs/decisions.md). Tests
+/// measure sigma from other cases.
 inline constexpr float pull_strength = 12;
 inline constexpr float smoothing_strength = 2.6f;
 /// Width of a density range, in units of rho_0: the attraction is full up to a density of 1 - skin_depth, and

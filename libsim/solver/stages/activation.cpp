@@ -24,7 +24,7 @@ struct Choose {
   const std::uint8_t* level;
   const float* importance;
   const ValueRange* range;
-  const std::uint8_t* age;  ///< frames since a split or merge made the particle; nullptr if there are none
+  const std::uint8_t* age;  ///< frames since a split or merge made it; nullptr if nothing splits or merges
   Vec4* velocity;
   std::uint8_t* active;
   std::uint8_t* rest;

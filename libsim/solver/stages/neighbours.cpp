@@ -42,8 +42,9 @@ using PresentView = ColumnView<columns(Column::Position, Column::Velocity, Colum
                                columns(Column::Predicted, Column::Neighbours), columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Searches in a frame's first substep. Later substeps use the lists of the substep before, whose margin
-/// covers the moves since then. Each frame searches anew, so that its lists depend on the particles alone.
+/// Lists the neighbours at the positions before the move, in a frame's first substep. Later substeps use the
+/// lists of the substep before, whose margin covers the moves since then. Each frame searches anew, so that
+/// its lists depend on the particles alone.
 void run_present(FluidState& state, PresentView p) {
   if (state.substep > 0) return;
   p.copy<Column::Predicted, Column::Position>();

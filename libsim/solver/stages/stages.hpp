@@ -198,7 +198,8 @@ using DensityView =
     ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
 /// Computes densities and multipliers at the predicted positions of the particles that the frame solves.
 void constrain_density(FluidState& state, DensityView particles);
-/// Computes densities and multipliers of all particles, solved or not; needs lists that are indexed by slots.
+/// Computes densities and multipliers of all particles, solved or not; needs lists that are indexed by slots
+/// (particles/selection.hpp).
 void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
 
 using DisplacementView =

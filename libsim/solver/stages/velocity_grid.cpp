@@ -133,7 +133,7 @@ template <class Boundary>
 void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  // Without inherit_change the mean velocities come from the grid V, as in ViP-Fluid.
+  // Without inherit_change the mean velocities come from Activation::grid, with the cells of ViP-Fluid.
   const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;
