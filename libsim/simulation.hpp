@@ -59,7 +59,8 @@ struct SimulationOptions : SolverNumbers {
   std::int64_t n_star = 32 * 1024;  ///< n_*: number of particles if all had the coarsest level, 3
   Backend backend = Backend::Cpu;
   Readings readings = readings_of(Preset::Tuned);
-  /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
+  /// Store the features from which saliency is computed (ParticleSaliency's members other than s and target)
+  /// for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< for tests of methods that split and merge
   /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_*
@@ -76,8 +77,8 @@ struct SimulationOptions : SolverNumbers {
   int start_frame = 0;
   /// For starts in the middle of a run: maximum number of density projections that move the particles of
   /// `start` until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities do not
-  /// change. The velocity grid of temporal acceleration is then built from the start as well. 0 = use the
-  /// start unchanged.
+  /// change. The velocity grid of temporal acceleration, which moves the particles that a frame does not
+  /// solve, is then built from the start as well. 0 = use the start unchanged.
   int start_projections = 0;
   /// Resume from a file that Simulation::save_state wrote in a run with the same scene and options. The run
   /// then continues bit for bit like the saved run. Excludes `start`; start_frame comes from the file.

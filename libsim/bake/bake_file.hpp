@@ -11,11 +11,12 @@
 /// frame's bounding box: the error is at most extent / 131070; for water the writer keeps it below a
 /// twentieth of the finest radius. The radii of foam particles and the temperatures of water particles are
 /// stored with 16 bit too, each over its range in the frame. All other values are exact. Each frame has its
-/// account; format 1 stores only the particle counts of it. Since format 3 the header contains the view
-/// (BakedView) and the inputs of tau. Since format 4 it contains the computed effects, and foam is stored.
-/// Since format 5 particles may have temperatures, and the header contains the overlay and the picture's
-/// effects. A bake without contents of format 5 is written in format 4. Equal content gives equal bytes (no
-/// date is stored).
+/// account (FrameAccount: particle counts, temporal acceleration, guard counts); format 1 stores only the
+/// particle counts. Since format 3 the header contains the view (BakedView) and the inputs of temporal
+/// acceleration (BakedTolerance). Since format 4 it contains the computed effects, and foam is stored. Since
+/// format 5 particles may have temperatures, and the header contains the overlay and the picture's effects. A
+/// bake without contents of format 5 is written in format 4. Equal content gives equal bytes (no date is
+/// stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -34,7 +35,8 @@ namespace sim {
 
 /// The picture and the gaze for which the fluid was computed during the bake.
 struct BakedView {
-  /// Size of the picture that was drawn, to be stored or only for the method; 0 x 0 = no picture was drawn.
+  /// Size of the picture that was drawn in each frame, to be stored or only because the method computes
+  /// saliency from it; 0 x 0 = no picture was drawn.
   int width_px = 0, height_px = 0;
   /// Vertical angle of the picture's camera, in (0, 180); 0 = no picture was drawn.
   double camera_angle_deg = 0;
@@ -49,7 +51,8 @@ struct BakedView {
   bool drawn() const { return width_px > 0; }
 };
 
-/// Inputs of temporal acceleration.
+/// Inputs of temporal acceleration, which solves only a random part of the particles in each frame. From them
+/// follow the tolerance tau, frames/s, and beta, the lowest probability that a particle is solved.
 struct BakedTolerance {
   FrameRate rate;          ///< the frame rate from which tau was computed
   stats::PtpeModel model;  ///< the PTPE model that gives tau and beta

@@ -110,7 +110,10 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   State& s = *state_;
   const std::string place = bake::frame_place(s.path.string(), "frame", s.frames);
   if (s.frames == s.header.frame_count || !s.complete())
-    throw std::logic_error("BakeWriter: a frame too many, or the last frame's foam or picture is missing");
+    throw std::logic_error(
+        "BakeWriter::add_frame: all frame_count frames were added, or the last one lacks its foam or "
+        "picture; "
+        "state all frames in the header, and call add_foam() and add_picture() before the next frame");
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
     throw base::Error(place,
                       "has " + std::to_string(particles.size()) +
@@ -121,7 +124,8 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   const bool warm = s.header.reference_k.has_value();
   if (temperature_k.size() != (warm ? particles.size() : 0))
     throw std::logic_error(
-        "BakeWriter: a frame without its temperatures, or with some that the header lacks");
+        "BakeWriter::add_frame: temperatures do not fit the header; pass one per particle if the header has "
+        "reference_k, otherwise none");
   encode_particles(time_s, account, particles, s.header.radius_by_level_m, warm ? &temperature_k : nullptr,
                    particle_zstd_level, place, s.chunk);
   ByteReader facts(s.chunk, place);
@@ -134,7 +138,9 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
 void BakeWriter::add_foam(const std::vector<RenderParticle>& foam) {
   State& s = *state_;
   if (s.header.max_foam == 0 || s.foams + 1 != s.frames || s.pictures == s.frames)
-    throw std::logic_error("BakeWriter: foam without its frame, or that the header does not state");
+    throw std::logic_error(
+        "BakeWriter::add_foam: max_foam of the header is 0, or no frame waits for foam; call it once after "
+        "each add_frame() and before add_picture(), if max_foam is above 0");
   const std::string place = bake::frame_place(s.path.string(), "foam", s.foams);
   if (foam.size() > static_cast<std::size_t>(s.header.max_foam))
     throw base::Error(place,
@@ -154,7 +160,10 @@ void BakeWriter::add_picture(ByteSpan rgba) {
                      static_cast<std::size_t>(s.header.picture_height_px) * 4;
   const bool foam_missing = s.header.max_foam > 0 && s.foams != s.frames;
   if (!s.header.has_pictures() || s.pictures + 1 != s.frames || foam_missing || rgba.size() != bytes) {
-    throw std::logic_error("BakeWriter: a picture without its frame, or of another size");
+    throw std::logic_error(
+        "BakeWriter::add_picture: the header states no pictures or another size, no frame waits for a "
+        "picture, "
+        "or the frame's foam is missing; call it once per frame, after add_foam() if max_foam is above 0");
   }
   const bool key = s.pictures % bake::key_interval == 0;
   encode_picture(s.facts, rgba, key ? ByteSpan() : ByteSpan(s.previous), s.header.picture_width_px,
@@ -168,7 +177,9 @@ void BakeWriter::add_picture(ByteSpan rgba) {
 BakeSizes BakeWriter::finish() {
   State& s = *state_;
   if (s.frames != s.header.frame_count || !s.complete())
-    throw std::logic_error("BakeWriter: frames are missing");
+    throw std::logic_error(
+        "BakeWriter::finish: fewer than frame_count frames were added, or the last one lacks its foam or "
+        "picture; add them first");
   s.write_index();
   s.file->put_in_place();
   s.sizes.file_bytes = s.offset;

@@ -13,7 +13,8 @@ namespace {
 /// Bits of the byte after the particle counts: which facts of the frame follow in the file.
 enum FactBits : std::uint8_t { has_temporal = 1, has_tau = 2, has_rate = 4, has_guards = 8, all_bits = 15 };
 
-/// Calls visit for every guard counter, in the order of the file.
+/// Calls visit for every guard counter (how often a safety rule of the solver intervened), in the order of
+/// the file.
 template <typename Guards, typename Visit>
 void each_guard(Guards& guards, Visit visit) {
   visit(guards.speed_limited);

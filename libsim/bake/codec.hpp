@@ -15,7 +15,8 @@ namespace sim {
 /// Facts of a frame, stored at the front of its particle chunk and of its picture chunk.
 struct BakeFacts {
   double time_s = 0;  ///< simulated time since frame 0
-  /// Includes a particle count per radius of the file's header. Format 1 stores nothing else of the account.
+  /// Particle counts (one per radius of the file's header), temporal acceleration and guard counts; format 1
+  /// stores only the particle counts.
   FrameAccount account;
 };
 
@@ -35,11 +36,12 @@ struct BakePicture {
   Bytes rgba;
 };
 
-/// Upper bound on the particles of a frame: HiRes at the largest n_*.
+/// Upper bound on the particles of a frame: 8 n_* for the largest n_* (number of particles if all are
+/// coarsest) that parse_n_star() accepts, when all particles are finest.
 inline constexpr std::int64_t max_bake_particles = std::int64_t{32} << 20;
 /// Upper bound on the diffuse particles of the effect foam.
 inline constexpr std::int64_t max_bake_foam = std::int64_t{1} << 20;
-/// Upper bounds on the levels, and on a side of a picture in px.
+/// Upper bounds on the number of levels (radii of particles), and on a side of a picture in px.
 inline constexpr std::size_t max_bake_levels = 16;
 inline constexpr int max_picture_side = 8192;
 /// Upper bound on the error of a temperature, K: frames whose temperatures span more than 13,107 K are
@@ -86,7 +88,8 @@ void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& pla
 void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, int width_px, int height_px,
                     int zstd_level, Bytes& out);
 
-/// Decodes the bytes of encode_picture(), with the same `previous`, which may not overlap out.rgba.
+/// Decodes the bytes of encode_picture(). `previous`: as passed to encode_picture(); may not overlap
+/// out.rgba.
 void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
                     int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
@@ -95,8 +98,9 @@ void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, 
 inline constexpr std::uint32_t bake_format = 5;
 
 /// Writes and reads the facts at the front of particle and picture chunks: time and counts; since format 2
-/// one byte that says which values were measured (FactBits), followed by tau, mu and delta, beta and the
-/// number of active particles, and the guards, as far as measured.
+/// one byte that says which of the following were measured (FactBits in codec.cpp), then these: the tolerance
+/// tau, mean and standard deviation of the frame rate, beta and the number of solved particles, and the guard
+/// counts.
 void put_facts(ByteWriter& out, const BakeFacts& facts);
 BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels);
 

@@ -7,7 +7,8 @@ namespace sim {
 
 namespace {
 
-/// How the pixels of a row are predicted: as 0, or from pixels to the left, above, or in the last picture.
+/// How the pixels of a row are predicted: as 0, or from pixels to the left, above, or at the same place in
+/// the previous picture. Gradient: left + above - above left.
 enum Predictor : std::uint8_t { None, Left, Above, Gradient, Previous, predictors };
 
 using Row = std::uint8_t*;

@@ -11,7 +11,8 @@ PictureRing::PictureRing(const BakeReader& bake, std::size_t capacity)
     : bake_(bake), reader_(bake), slots_(std::max<std::size_t>(capacity, 2)) {
   const auto bytes = static_cast<std::size_t>(bake.header().picture_width_px) *
                      static_cast<std::size_t>(bake.header().picture_height_px) * 4;
-  if (bytes == 0) throw std::logic_error("PictureRing: the bake has no pictures");
+  if (bytes == 0)
+    throw std::logic_error("PictureRing: the bake has no pictures; check BakeHeader::has_pictures() first");
   // Write to the memory now, to avoid page faults while pictures are shown.
   for (Slot& each : slots_) each.picture.rgba.assign(bytes, 0);
   thread_ = std::thread([this] { decode_loop(); });

@@ -24,8 +24,8 @@ class PictureRing {
   PictureRing& operator=(const PictureRing&) = delete;
 
   /// Decodes from `frame` on; after the last picture it continues at `frame` again. Returns when the ring is
-  /// full. Does nothing if `frame` is already both the next picture and the one that follows the last
-  /// picture.
+  /// full. Does nothing if `frame` is already the frame to be taken next, and also the one at which decoding
+  /// continues after the last picture.
   void start(std::int64_t frame);
   /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet. If `frame` is not
   /// among the next 2 x capacity pictures, decoding restarts at `frame`. A picture that cannot be read throws

@@ -1,5 +1,6 @@
 #pragma once
-/// The hard cases of the fluid; each case, with its variants, is defined in one file.
+/// The hard cases of the fluid (scenes that are difficult for the solver); each case, with its variants, is
+/// defined in one file.
 
 #include "libsim/cases/hard_case.hpp"
 

@@ -67,9 +67,9 @@ struct Outcome {
   std::string text() const;
 };
 
-/// True if the finding measures lost, braked or compressed water: particles outside, braked particles, or the
-/// largest rho / rho_0. Its limit applies with effects too. Other findings, such as where and how fast water
-/// comes to rest, may change with effects.
+/// True if the finding measures lost, braked or compressed water: particles outside the tank, particles whose
+/// speed the solver limited, or the largest rho / rho_0. Its limit applies with effects too. Other findings,
+/// such as where and how fast water comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
 /// The outcome with only those findings for which is_of_stability() is true.
 Outcome of_stability(Outcome outcome);

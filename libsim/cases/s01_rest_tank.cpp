@@ -1,4 +1,4 @@
-/// S1: a tank at rest with 20 layers of the method's start spacing.
+/// S1: a tank at rest with 20 layers of particles, at the spacing with which the method starts.
 
 #include <algorithm>
 #include <cmath>

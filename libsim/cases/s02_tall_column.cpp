@@ -1,4 +1,5 @@
-/// S2: a column of 80 finest layers with eight projections per frame, starting from an unsettled lattice.
+/// S2: a column of 80 layers of the finest spacing, with eight projections per frame, starting from an
+/// unsettled lattice.
 
 #include <cmath>
 
@@ -19,7 +20,7 @@ Outcome run_s02(const Setting& setting) {
   // LoRes, whose column has only 40 layers, each twice as thick.
   const MethodTraits& method = traits_of(setting.method);
   const bool fine = !method.adaptive() && method.start_level == 0;
-  // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of the random
+  // With temporal acceleration the largest rho / rho_0 is chaotic: 1.13 to 1.19 for eight seeds of the random
   // choice of active particles.
   const bool temporal = method.temporal;
   Watch watch(with_effects(scene, setting), options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});

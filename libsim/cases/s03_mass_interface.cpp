@@ -1,4 +1,5 @@
-/// S3: water of level 3 below water of level 0, at rest, without splits and merges.
+/// S3: water of level 3 (particles of eight times the mass) below water of level 0, at rest, without splits
+/// and merges.
 
 #include <cmath>
 

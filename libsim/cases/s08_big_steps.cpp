@@ -63,12 +63,14 @@ Outcome dam(const Setting& setting) {
   Finding braked = nobody("braked", met.speed_limited);
   if (levels) {
     density.asked = 1.2;
-    // With temporal acceleration the limit is higher, because unsolved particles overlap solved ones.
+    // With temporal acceleration the limit is higher, because particles that the frame does not solve overlap
+    // those that it solves.
     if (traits.temporal) {
       mostly.limit = 1.3;
       mostly.asked = 1.2;
     }
-    // The limit is not 0: in a run of some 1e9 particle-substeps on an H200, FovFluid braked one particle.
+    // The limit is not 0: in a run of some 1e9 particle-substeps on an H200 with the method FovFluid, the
+    // speed limit braked one particle.
     braked.limit = 20;
     braked.asked = 0;
   }

@@ -1,4 +1,5 @@
-/// S10: sheets of one and of two layers that fall towards a pool, away from the gaze, compared with HiRes.
+/// S10: sheets of one and of two layers that fall towards a pool, away from the gaze. Their area is compared
+/// with that under the method HiRes, whose particles all stay finest.
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,8 @@ namespace sim::cases {
 
 namespace {
 
-/// Mass, m_*, in the fovea around a point, and the share of this mass that is at least as fine as its target.
+/// Mass of the water in the fovea around a point, in units of m_* (mass of a finest particle), and the share
+/// of this mass whose level is at least as fine as its target level.
 struct Fovea {
   double mass = 0, share = 0;
 };

@@ -11,7 +11,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Potential plus kinetic energy divided by m_*, m2/s2.
+/// Potential plus kinetic energy divided by m_* (mass of a finest particle), m2/s2.
 double energy(const State& state) {
   return gravity * centre_height(state) * mass(state) + kinetic_energy(state);
 }

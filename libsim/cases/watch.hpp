@@ -61,7 +61,8 @@ class Watch {
 
 /// The scene with the setting's effects in addition to its own.
 Scene with_effects(Scene scene, const Setting& setting);
-/// Options with the setting's method, back end and parameters. Ours-TSp runs at tau = -10: beta = 0.67.
+/// Options with the setting's method, back end and parameters. The method Ours-TSp runs at a constant
+/// tolerance tau = -10 frames/s; the lowest probability that a particle is solved is then 0.67.
 SimulationOptions options_of(const Setting& setting);
 /// Options for a run that starts with the particles `start`. Sets the size of the scene's water and n_* so
 /// that the finest spacing is d (libsim/cases/water.hpp).

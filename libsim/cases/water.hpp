@@ -32,7 +32,7 @@ double start_spacing(MethodKind method);
 State block(MethodKind method, const Vec3d& low, const Vec3d& high, const Vec3d& velocity = {},
             int first_id = 0);
 
-/// Mass in m_*: 2^level.
+/// Mass of a particle (2^level) and of all particles, in units of m_*, the mass of a particle of level 0.
 double mass(const ParticleState& p);
 double mass(const State& state);
 double speed(const ParticleState& p);
@@ -49,7 +49,8 @@ int outside(const State& state, const Vec3d& size, double tolerance_m);
 /// order; at most 2.
 std::vector<double> nearest_distances(const State& state);
 
-/// A settled pool, 8 finest layers deep, of 4,096 particles of HiRes, seen from the front.
+/// A settled pool of 4,096 finest particles, 8 layers deep, computed with the method HiRes and seen from the
+/// front.
 struct Pool {
   static constexpr std::int64_t n_star = 512;
   Scene scene;

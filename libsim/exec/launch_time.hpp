@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Total of the launches with one label since the profile was switched on.
+/// Total of the launches with one label since profile_launches(true).
 struct LaunchTime {
   std::string label;
   int launches = 0;

@@ -149,7 +149,7 @@ void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigne
     launch(label, run_block_kernel<false, F>, 1, static_cast<unsigned>(threads), 0, f, spare.data());
   }
 }
-/// Passes over at most this many cells should run in one block.
+/// Grids of at most this many cells should be processed in one block (in_one_block()).
 constexpr int one_block_cells = 8192;
 
 #else
@@ -190,7 +190,7 @@ void in_one_block(const char* label, int /*width*/, std::size_t bytes, Array<uns
   spare.resize(bytes);
   f(OneBlock{}, spare.data());
 }
-/// Passes over at most this many cells should run in one block.
+/// Grids of at most this many cells should be processed in one block (in_one_block()).
 constexpr int one_block_cells = 512;
 
 #endif

@@ -16,7 +16,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Switches the profile of this back end on or off, and discards earlier measurements.
+/// Switches the profile of this back end (number and total time of the launches with each label) on or off,
+/// and discards earlier measurements.
 void profile_launches(bool on);
 /// The profile: one entry per label, longest first; waits for all launched work.
 std::vector<LaunchTime> launch_times();

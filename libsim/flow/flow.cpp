@@ -68,8 +68,8 @@ struct SumMass {
   SIM_FN void operator()(int k) const { mass[k] = 1 << level[taken[k]]; }
 };
 
-/// Finds the smallest number of particles at the list's front whose mass is at least `need` > 0. At most one
-/// index k writes the result.
+/// Finds the smallest number of particles, taken from the front of the list lowest_first (Exchange::run),
+/// whose mass in m_* is at least `need` > 0. At most one index k writes the result.
 struct FindCut {
   const int* mass;
   const int* sum;
@@ -86,7 +86,8 @@ struct SetAll {
   SIM_FN void operator()(int i) const { values[i] = value; }
 };
 
-/// Marks taken particles as removed; the new particles get the taken ids first.
+/// Marks the particles that a nozzle takes from the corners as removed, and gives their ids to the first of
+/// the `made` particles that the nozzle adds.
 struct Leave {
   const int* taken;
   const int* id;
@@ -113,15 +114,17 @@ struct Stay {
   }
 };
 
-/// Assigns the lowest free ids to the new particles that get no id of a taken particle.
+/// Assigns the lowest free ids to the particles that a nozzle adds and that get no id of a particle that it
+/// took.
 struct TakeFree {
   const int* free_ids;
   int* ids;
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// Initialises the new particles, except position, velocity and temperature. Their target is their level, and
-/// the four entries of their history are this target. Saliency is not measured yet and is set to 0.
+/// Initialises the particles that a nozzle adds, except position, velocity and temperature. Their target
+/// level is their level, which also fills the four entries of their history of targets. Saliency is not
+/// measured yet and is set to 0.
 struct Make {
   const int* ids;
   Vec4* position;

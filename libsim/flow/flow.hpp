@@ -105,7 +105,7 @@ struct Jets {
   double finest_spacing_m = 0;  ///< d_*, the spacing of particles of level 0
   double frame_dt_s = 0;        ///< > 0
   Corners corners;
-  /// True if the level of new layers is the median target of the particles near the mouth.
+  /// True if the level of new layers is the median target level of the particles near the mouth.
   bool by_target = false;
   int level = 0;         ///< level of the particles that are added
   int frame = 0;         ///< number of the frame that begins

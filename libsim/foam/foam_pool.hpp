@@ -13,7 +13,7 @@ namespace sim::SIM_BACKEND {
 
 /// Numbers of diffuse particles since the run began: emitted = alive + dissolved + dropped + left.
 struct FoamLedger {
-  std::uint64_t emitted;    ///< requested by the potentials
+  std::uint64_t emitted;    ///< requested by the rules of emission (FoamRules)
   std::uint64_t dissolved;  ///< reached the end of their lifetime on the water
   std::uint64_t dropped;    ///< not emitted, because the pool had no free slot
   std::uint64_t left;       ///< left through an outlet, or became non-finite

@@ -31,7 +31,8 @@ struct BeginSums {
   }
 };
 
-/// Assigns the change since the last mark to one cause, and momentum that guards removed to Change::Braked.
+/// Assigns the change of momentum since the last call of mark() or begin_frame() to one cause, and the part
+/// that guards removed (speed limit, particles that are not finite or far outside) to Change::Braked.
 struct Count {
   int change;
   const Guards* guards;

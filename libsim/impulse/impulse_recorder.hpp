@@ -12,8 +12,8 @@ namespace sim::SIM_BACKEND {
 enum class Change { None, Forces, Flow, Levels, Viscosity, Effects, Inherited, Projections, Braked, count };
 enum class WallPart { MissingDensity, CoarsePressure, Clamp, count };
 
-/// A gauge in solver coordinates: its wall, and a box that is infinite across the wall and beyond each edge
-/// of the wall that the gauge reaches.
+/// A gauge in the form that kernels use: its wall, and the gauge's box made infinite across the wall, and
+/// beyond each edge of the wall that the box reaches.
 struct GaugeBox {
   int wall;
   Vec3 low, high;
@@ -76,8 +76,8 @@ struct RecordClamp {
 
 /// Momentum of the water, m_* m/s: totals, and changes by cause.
 struct MomentumSums {
-  Momentum now, last, first;  ///< at present, at the last mark, at the frame's beginning
-  Momentum taken;             ///< removed by guards up to the last mark
+  Momentum now, last, first;  ///< at present, at the last mark() or begin_frame(), at begin_frame()
+  Momentum taken;             ///< removed by guards (Guards::braked) up to the last mark()
   Momentum changed[static_cast<int>(Change::count)];
 };
 
@@ -95,8 +95,8 @@ class ImpulseRecorder {
   WallRecord record_to(float times = 1);
 
   void begin_frame(const Particles& particles, const Guards* guards);
-  /// Assigns the change of momentum since the last mark to the cause `as`; does nothing for Change::None or
-  /// while off.
+  /// Assigns the change of momentum since the last mark() or begin_frame() to the cause `as`; does nothing
+  /// for Change::None or while off.
   void mark(Change as, const Particles& particles, const Guards* guards);
   /// Returns the frame's account. `rest_density` in kg/m3; `dt`: duration of a substep, s.
   MomentumAccount end_frame(float rest_density, float dt);

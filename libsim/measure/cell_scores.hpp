@@ -1,5 +1,6 @@
 #pragma once
-/// The scores of Table 1 per picture, and their change since another run.
+/// The scores of Table 1 (how far each method's pictures differ from those of HiRes) per picture, and their
+/// change since another run.
 
 #include <array>
 #include <filesystem>

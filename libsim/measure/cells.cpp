@@ -11,7 +11,7 @@ namespace measure {
 
 namespace {
 
-/// The tau that the paper's Table 2 gives for this scene, n_* and method.
+/// The tolerance tau, frames/s, that the paper's Table 2 gives for this scene, n_* and method.
 double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
   const auto path = base::resource("data/paper/table2_performance.csv");
   const auto lines = base::split(base::read_file(path, 1 << 16), '\n');

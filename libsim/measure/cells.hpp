@@ -1,5 +1,5 @@
 #pragma once
-/// Options and cells that the commands for the paper's Tables 1 and 2 share.
+/// Options of the commands for the paper's Tables 1 and 2, and the sizes, presets and tau that they select.
 
 #include <cstdint>
 #include <optional>
@@ -30,7 +30,8 @@ struct CellSize {
 std::vector<CellSize> sizes_of(const std::string& words);
 std::vector<sim::Preset> presets_of(const std::string& word);
 
-/// The value of the option --tau for one cell; none if tau is measured live.
+/// The tolerance tau, frames/s, that the option --tau selects for this scene, n_* and method; none if tau
+/// follows from the measured frame times.
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The particles with which Table 1's runs start: those of HiRes at a checkpoint, perturbed by an ulp, and
-/// coarsened to each method's targets for one of several gaze points.
+/// The particles with which Table 1's runs start: those of HiRes (all finest) at a checkpoint, perturbed by
+/// an ulp, and merged to each method's target levels for one of several gaze points.
 
 #include <cstdint>
 #include <vector>
@@ -25,8 +25,8 @@ std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int coun
 /// id, axis and repeat. Repeat 0 returns the state unchanged.
 std::vector<sim::ParticleState> perturbed(const std::vector<sim::ParticleState>& state, int repeat);
 
-/// The target of each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error if a
-/// particle has no value.
+/// The target level of each particle of `state`, in the order of `state`: values[i] belongs to the particle
+/// ids[i]. base::Error if a particle has no value.
 std::vector<std::uint8_t> targets_by_id(const std::vector<sim::ParticleState>& state,
                                         const std::vector<int>& ids,
                                         const std::vector<sim::ParticleSaliency>& values);

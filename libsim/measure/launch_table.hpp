@@ -44,7 +44,8 @@ struct PassFloor {
 std::optional<PassFloor> floor_of(const std::string& label, double launches_a_frame, double ms_a_frame,
                                   const PassWater& water, double gb_s);
 
-/// Adds up the launches of several parts of a run. A bench leaves out the parts in which it measures.
+/// Adds up the launches of several parts of a run. Between the parts a bench measures the water's accuracy;
+/// the launches of these measurements are left out.
 class LaunchSums {
  public:
   void add(const std::vector<sim::LaunchTime>& stretch);

@@ -24,8 +24,8 @@ class Onlooker {
   void look(sim::Simulation& fluid, const sim::Vec3d& gaze_m) {
     picture_.look(fluid, view_, sim::gaze_at(camera_, gaze_m));
   }
-  /// Calls look(), advances by a frame, and draws if `wanted` or if the run uses pictures. Passes the
-  /// measured duration to Simulation::frame_time.
+  /// Calls look(), advances by a frame, and draws if `wanted` or if the run computes saliency from pictures.
+  /// Passes the measured duration to Simulation::frame_time.
   void step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted);
   void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }
 
@@ -35,7 +35,8 @@ class Onlooker {
   sim::GBuffer gbuffer() const { return picture_.renderer().read_gbuffer(); }
   /// Mask of the fluid's pixels (1; others 0) in the last picture; row 0 is the top.
   std::vector<std::uint8_t> fluid_mask() const;
-  /// The last picture with the water painted by level. `finest_spacing_m` is 2 r_*.
+  /// The last picture with the water painted by level. `finest_spacing_m`: 2 r_*, the diameter of particles
+  /// of level 0.
   sim::Image painted_by_level(sim::Simulation& fluid, double finest_spacing_m);
 
  private:

@@ -120,7 +120,7 @@ class Stills {
     return sim::make_simulation(scene_.scene, choice);
   }
 
-  /// Targets of the checkpoint's particles: by gaze alone, and by saliency.
+  /// Target levels of the checkpoint's particles: first those from the gaze alone, then those from saliency.
   std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> targets(const Checkpoint& checkpoint,
                                                                           sim::Preset preset,
                                                                           const sim::Vec3d& gaze_m) const {
@@ -200,8 +200,8 @@ class Stills {
     return out;
   }
 
-  /// Records the quality of a method's start. Called for the first repeat only, because the other repeats
-  /// differ from it by an ulp.
+  /// Records how many projections a method's start needed and how much compression remained. Called for the
+  /// first repeat only, because the other repeats differ from it by an ulp.
   void note_start(sim::Simulation& fluid, Method method, sim::Preset preset) {
     auto& starts = result_.starts;
     auto found = std::find_if(starts.begin(), starts.end(), [&](const auto& start) {

@@ -91,7 +91,7 @@ std::size_t still_runs(const sim::CellScene& scene, const Table1Options& options
 /// and is compared `frames_after` frames later with HiRes from the same checkpoint. Repeats perturb the state
 /// by an ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from perturbed states shows
 /// the differences that chaos alone causes. The masks of the fovea and of salient pixels come from the HiRes
-/// picture and its saliency with tuned readings, the same for all methods. The mask of the fluid is
+/// picture and its saliency with Preset::Tuned, the same for all methods. The mask of the fluid is
 /// grown_union() of the water in both pictures. Needs a current context; calls `done` after each run.
 StillResult run_stills(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
                        const std::vector<sim::Preset>& presets, const std::function<void()>& done,

@@ -23,8 +23,8 @@ std::string processor();
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;
-  double neighbours_mean = 0;
-  double listed_mean = 0;
+  double neighbours_mean = 0;  ///< neighbours within the support h
+  double listed_mean = 0;      ///< entries of a neighbour list, which reaches beyond h
   int samples = 0;
   void add(const sim::FrameReport& report) {
     ++samples;

@@ -16,7 +16,9 @@ namespace sim {
 namespace {
 /// Shortest exact text of a number; always with a point or exponent, so that TOML reads a float.
 std::string exact(double value) {
-  if (!std::isfinite(value)) throw std::invalid_argument("a PTPE file holds finite numbers only");
+  if (!std::isfinite(value))
+    throw std::invalid_argument(
+        "format_ptpe_file: a number of the fit is not finite; pass a fit with finite numbers only");
   const std::string out = base::shortest(value);
   return out.find_first_of(".e") == std::string::npos ? out + ".0" : out;
 }
@@ -38,7 +40,7 @@ std::array<double, 2> interval(const base::TomlTable& table, const char* key, co
   if (ends[0] > ends[1]) table.fail(key, "has its low end above its high end", "write [low, high]");
   if (estimate < ends[0] || estimate > ends[1])
     table.fail(of, "= " + base::shortest(estimate) + " lies outside its own interval, " + key,
-               "fit again: one of the two was changed");
+               "fit again with vip-stats fit-ptpe: one of the two was changed");
   return {ends[0], ends[1]};
 }
 
@@ -46,7 +48,9 @@ std::array<double, 2> interval(const base::TomlTable& table, const char* key, co
 std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::PtpeModel& model) {
   constexpr base::Range rate{1e-6, 1e9};
   const auto deltas = table.numbers("band_delta_fps", 0, {0, 1e4});
-  if (deltas.empty()) table.fail("band_delta_fps", "is empty", "fit again: a band has at least one entry");
+  if (deltas.empty())
+    table.fail("band_delta_fps", "is empty",
+               "fit again with vip-stats fit-ptpe: a band has at least one entry");
   const auto lows = table.numbers("band_low95_fps", deltas.size(), rate);
   const auto highs = table.numbers("band_high95_fps", deltas.size(), rate);
   const auto away = table.numbers("band_out_of_reach_fps");
@@ -57,7 +61,7 @@ std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::Pt
     const double mu = model.a * std::exp(model.b * deltas[i]);
     if (!(lows[i] <= mu && mu <= highs[i]))
       table.fail_at("band_low95_fps", i, "and band_high95_fps at this delta do not enclose a exp(b delta)",
-                    "fit again: one of them was changed");
+                    "fit again with vip-stats fit-ptpe: one of them was changed");
     const bool in_reach = std::find(away.begin(), away.end(), deltas[i]) == away.end();
     out.push_back({deltas[i], {lows[i], highs[i]}, in_reach});
   }
@@ -69,7 +73,7 @@ std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::Pt
   return out;
 }
 
-/// The largest half width of the band, as a share of a exp(b delta).
+/// The largest half width of the band (PtpeBandPoint::mu), as a share of a exp(b delta) at the same delta.
 double widest(const PtpeFile& file) {
   double out = 0;
   for (const auto& point : file.band)
@@ -101,7 +105,8 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
     root.fail("format",
               "= " + std::to_string(format) + " is not a format this program reads (1 to " +
                   std::to_string(PtpeFile::format_version) + ")",
-              "use the program that wrote the file, or fit again with this one");
+              "use the version of ViP-Lab that wrote the file, or fit again with vip-stats fit-ptpe of this "
+              "version");
   }
   const auto table = root.table("ptpe");
   PtpeFile file;

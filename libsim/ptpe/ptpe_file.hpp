@@ -1,5 +1,6 @@
 #pragma once
-/// ptpe.toml: a fitted PTPE model, passed from the study to the solver.
+/// ptpe.toml: a fitted PTPE model, passed from the study to the solver. It gives the mean frame rate that is
+/// just satisfactory, mu(delta) = a exp(b delta), at a standard deviation delta.
 
 #include <array>
 #include <filesystem>
@@ -23,7 +24,7 @@ struct PtpeFile {
   static constexpr int format_version = 2;  ///< format 1, without a band, can be read too
 
   stats::PtpeModel model;            ///< a in frames/s, b in s/frame, and the kind of mean used as predictor
-  double level = 4;                  ///< satisfaction score of the contour, in [1, 7]
+  double level = 4;                  ///< satisfaction score on the curve mu(delta), in [1, 7]
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};
   /// By ascending delta; each interval contains a exp(b delta); empty in format 1.

@@ -1,6 +1,6 @@
 #pragma once
-/// Switches temporal acceleration on and off, and sets its strength (paper sections 4.1 and 4.3, Eq. 11,
-/// Algorithm 3).
+/// Switches temporal acceleration (a frame solves only part of the particles) on and off, and sets its
+/// strength (paper sections 4.1 and 4.3, Eq. 11, Algorithm 3).
 
 #include <cstdint>
 #include <optional>
@@ -25,7 +25,8 @@ struct FrameRate {
 /// Reads "MEAN,SD" in frames/s, such as "16.9,3.2", with MEAN > 0 and SD >= 0; others are a base::Error.
 FrameRate parse_frame_rate(std::string_view text);
 
-/// Switches temporal acceleration by tau over the last 30 frames: on below 0, off above +1 frames/s. Two
+/// Switches temporal acceleration by the tolerance tau = mu - a exp(b delta), with the mean mu and standard
+/// deviation delta of the frame rate over the last 30 frames: on below 0, off above +1 frames/s. Two
 /// thresholds are used so that noise does not switch back and forth. A given tau (tests, benches), or the tau
 /// of a given frame rate (a study's schedule), replaces the measured tau, with the same thresholds.
 class ToleranceSwitch {
@@ -37,9 +38,9 @@ class ToleranceSwitch {
   explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {},
                            std::optional<FrameRate> fixed_rate = {});
 
-  /// Adds the duration of a whole frame, ms. A value that is not positive and finite is ignored and counted;
-  /// with a fixed tau the call changes nothing. on() does not change before window_frames durations are
-  /// known, because delta cannot be estimated from few frames.
+  /// Adds the duration of a whole frame, ms. A value that is not positive and finite is ignored and counted
+  /// (left_out()); with a fixed tau the call changes nothing. on() does not change before window_frames
+  /// durations are known, because delta cannot be estimated from few frames.
   void frame_time(double ms);
 
   /// tau = mu - a exp(b delta), frames/s; none before the first frame time is known.

@@ -1,6 +1,6 @@
 #pragma once
-/// The picture effects of a scene: maps of the light on the floor, shared by all views. Internal to the
-/// renderer.
+/// The picture effects of a scene (shadows, caustics): maps of the light on the floor, shared by all views.
+/// Internal to the renderer.
 
 #include <array>
 #include <cstdint>

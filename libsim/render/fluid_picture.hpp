@@ -34,8 +34,8 @@ class FluidPicture {
   void show(std::span<const View> views, unsigned framebuffer);
   /// Passes the gaze of the coming frame to the simulation and, if the method uses pictures, the last
   /// picture; before the first draw, the picture given to begin(). The picture stays on the device if the
-  /// back end shares memory with GL; otherwise it is copied through the host. visual_scale: as
-  /// sim::EyeLook::visual_scale.
+  /// back end shares memory with GL; otherwise it is copied through the host. visual_scale: tan of half the
+  /// angle of the picture at the viewer's eye / tan of half the camera's angle (sim::EyeLook::visual_scale).
   void look(Simulation& fluid, const View& view, const Gaze& gaze, double visual_scale = 1);
   FluidRenderer& renderer() { return renderer_; }
   const FluidRenderer& renderer() const { return renderer_; }

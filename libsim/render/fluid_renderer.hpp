@@ -163,10 +163,11 @@ class FluidRenderer {
   /// base::Error if nothing was drawn, or the limits of the scale are not finite or not low < high.
   void paint(const Overlay& overlay, unsigned framebuffer);
 
-  /// Saliency's inputs from a view of the last draw, in GL buffers. base::Error if that view was not drawn.
+  /// The inputs of saliency (depth, normals, radii) from a view of the last draw, in GL buffers. base::Error
+  /// if that view was not drawn.
   GlPicture picture(std::size_t view = 0) const;
-  /// Copies saliency's inputs from a view of the last draw to `out` on the host, and empties its other
-  /// arrays; waits for the device.
+  /// Copies the inputs of saliency, GBuffer::depth and GBuffer::normal, from a view of the last draw to `out`
+  /// on the host, and empties the other arrays of `out`; waits for the device.
   void read_picture(GBuffer& out, std::size_t view = 0) const;
   /// The G-buffer of a view of the last draw; waits for the device. base::Error if that view was not drawn.
   GBuffer read_gbuffer(std::size_t view = 0) const;

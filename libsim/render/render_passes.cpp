@@ -186,8 +186,8 @@ void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
                 t.wide_list.name(), t.touched.name(), t.blocks.name()});
 }
 
-/// Runs a program on the particles with large footprints that the last round of splatting listed; if
-/// all_items is 1, on the particles that both rounds listed.
+/// Runs a program on the particles with large footprints that the last of the two rounds of splatting
+/// (shaders/occlusion.glsl) listed; if all_items is 1, on those that both rounds listed.
 void FluidRenderer::State::dispatch_wide(const GlProgram& program, int all_items) {
   wide_dispatch.use();
   glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);

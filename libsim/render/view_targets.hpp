@@ -24,7 +24,7 @@ struct ViewTargets {
   GlBuffer radii;               ///< per pixel, radius of the front particle; 0: no particle
   GlBuffer filter_a, filter_b;  ///< nearness, 1 / depth; the filtered result is in filter_a
   GlBuffer normals;
-  GlBuffer touched;                   ///< one word per particle, see occlusion.glsl
+  GlBuffer touched;                   ///< per particle, flags of the splatting, see occlusion.glsl
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
   GlBuffer wide_list;                 ///< particles with large footprints, see wide_list.glsl
   GlBuffer wet;                       ///< flags of tiles that contain water, see wet_tiles.glsl

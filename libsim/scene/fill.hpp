@@ -16,7 +16,8 @@ double volume_m3(const WaterBlock& block);
 inline constexpr const char* gate_of_several = "encloses one block of water, and there are several";
 inline constexpr const char* no_gate = "write gate = false";
 
-/// Resolution that follows from the volume V of a scene's water and n_*.
+/// Resolution that follows from the volume V of a scene's water and n_*, the number of particles if all have
+/// the coarsest level.
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
   double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for the others
@@ -24,10 +25,11 @@ struct Resolution {
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// The scene without the effects that are idle in water of finest_level and coarser. The solver simulates
-/// this scene.
+/// The scene without the effects that act on no water of finest_level or coarser (is_idle()). The solver
+/// simulates this scene.
 Scene acting_scene(Scene scene, int finest_level);
-/// The scene without the effects that are idle in the method's water. The renderer draws this scene.
+/// The scene without the effects that act on no particle of the method, whose finest level is that of its
+/// start. The renderer draws this scene.
 Scene acting_scene(Scene scene, MethodKind method);
 
 /// Exactly particle_count(method, n_star) points, minus those inside obstacles, block by block. Each block

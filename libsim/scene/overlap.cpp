@@ -19,8 +19,9 @@ double depth(const Obstacle& one, const Vector& own, const Obstacle& other) {
   return one.radius_m - signed_distance(other, other.start, in_world(one.start, own));
 }
 
-/// Greatest depth of an edge of `one` in `other`, by ternary search: along a straight line the distance from
-/// a convex body has only one minimum.
+/// Greatest depth in `other` of the part of `one` that lies around the edge begin .. end of its inner box
+/// (half_sides_m()), by ternary search: along a straight line the distance from a convex body has only one
+/// minimum.
 double depth_of_edge(const Obstacle& one, const Vector& begin, const Vector& end, const Obstacle& other) {
   const auto at = [&](double s) {
     Vector own{};

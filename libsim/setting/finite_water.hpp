@@ -1,5 +1,6 @@
 #pragma once
-/// Rejects the results of a simulation that became unstable, and prints which guards stepped in.
+/// Rejects the results of a simulation that became unstable, and prints which guards (safety rules of the
+/// solver, such as the speed limit) stepped in.
 
 #include <string>
 

@@ -22,7 +22,7 @@ struct SettingFile {
     double ms_mean = 0;    ///< mean time of a whole frame, over fresh starts
     double ms_p95 = 0;     ///< 95th percentile of the time of a whole frame
     std::string error;     ///< name of the error that was minimised, such as "centre_pct"
-    double error_pct = 0;  ///< value of `error` against the sweep's reference, mean over all starts
+    double error_pct = 0;  ///< `error` against the sweep's reference run, mean over all starts
     double error_low_pct = 0, error_high_pct = 0;  ///< smallest and largest over the starts
     int seeds = 0;                                 ///< number of starts
     std::string date_utc;
