@@ -63,7 +63,8 @@ struct SimulationOptions : SolverNumbers {
   /// for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< for tests of methods that split and merge
-  /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_*
+  /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_star, the
+  /// number if all have the finest level
   std::int64_t particle_capacity = 0;
   /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 no particles merge, and only
   /// particles of `start` that are coarser than level 0 split. If `start` has no such particles, saliency is
@@ -143,7 +144,8 @@ struct TemporalReport {
   std::int64_t active = 0;        ///< number of solved particles
 };
 
-/// Particle counts, temporal acceleration and guard counts of a frame. Recording them costs almost no time.
+/// Particle counts, temporal acceleration, and interventions of the safety rules (guards) in a frame.
+/// Recording them costs almost no time.
 struct FrameAccount {
   std::vector<std::int64_t> particles_by_level;  ///< one count per radius of Simulation::radii_m
   std::optional<TemporalReport> temporal;        ///< none = no temporal acceleration, or no frame yet
@@ -274,15 +276,15 @@ class Simulation {
   /// Changes these numbers from the next frame on; alpha takes effect at the next level update. base::Error
   /// if one is out of range.
   virtual void change(const LiveNumbers&) {}
-  /// Replaces the list of effects from the next frame on. The schedule is compiled anew. Particles,
-  /// velocities, levels and guard counts stay. A new effect starts as in a new run: temperatures from the
-  /// scene's boxes, foam without particles. Effects that stay keep their state, but foam begins anew
-  /// if its most_particles changed. The number of substeps follows the new effects. From then on the run is
-  /// bit for bit equal to a run without the removed effects that starts from this state. Columns of removed
-  /// effects are freed. base::Error, with nothing changed: check_effects refuses the list, it needs more
-  /// substeps than the options or the program allow, or the foam particles are so small that a frame could
-  /// create more than an int can count. base::Error, after which the simulation cannot be used: the device is
-  /// out of memory.
+  /// Replaces the list of effects from the next frame on. The schedule (the list of a frame's passes) is
+  /// compiled anew. Particles, velocities, levels and guard counts stay. A new effect starts as in a new run:
+  /// temperatures from the scene's boxes, foam without particles. Effects that stay keep their state, but
+  /// foam begins anew if its most_particles changed. The number of substeps follows the new effects. From
+  /// then on the run is bit for bit equal to a run without the removed effects that starts from this state.
+  /// Columns of removed effects are freed. base::Error, with nothing changed: check_effects refuses the list,
+  /// it needs more substeps than the options or the program allow, or the foam particles are so small that a
+  /// frame could create more than an int can count. base::Error, after which the simulation cannot be used:
+  /// the device is out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
   /// Sets the duration of the last whole frame, ms, from which the frame rate tolerance tau of temporal
   /// acceleration follows (ViP-Fluid Eq. 11). Methods without temporal acceleration ignore it.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Demonstrates the main workflow on this machine: installs packages, builds, and runs every step from a scene
-# to the solver's file.
+# to the file of the fitted model that the solver reads.
 # usage: scripts/demo.sh        results go to out/demo/; a further run replaces them
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -52,7 +52,8 @@ files >"$work/before"
 inside dpkg --install /tmp/vip-lab.deb
 ! inside sh -c 'command -v cc || command -v c++ || command -v cmake' || { echo "package: the root has a compiler" >&2; exit 1; }
 
-# Runs the whole workflow in a user's home, from a protocol to the solver's file, a report and pictures.
+# Runs the whole workflow in a user's home, from a protocol to the fitted model that the solver reads, a
+# report and pictures.
 run() { printf '\n$ %s\n' "$*"; inside sh -c "cd $study && exec \"\$@\"" sh "$@"; }
 run vip-study --version
 run vip-study check ptpe_pilot --refresh 90

@@ -20,7 +20,7 @@ kept() {  # kept WHAT FILE ROWS: checks that all rows stored in FILE are among R
   mv "$2.now" "$2"
 }
 
-check() {  # checks every promise for a session whose process has just ended
+check() {  # checks the files of a session whose process has just ended, as this file's comments say
   "$study" status --db "$db" >"$out/$name.status" 2>&1 || fail "status: $(cat "$out/$name.status")"
   copy
   wanted integrity ok "$(ask "pragma integrity_check")"

@@ -6,11 +6,11 @@
 #        default: out/window_protocols, and ptpe_pilot task1 task2 task2_lab
 # Takes vip-study from $VIP_STUDY, else from build/dev. Pictures, database, exports and logs go to FOLDER/PROTOCOL.
 #
-# The protocols are shortened, so that a session takes two to four minutes on two cores. Live fluid has an n_*
-# of 64 or 128 and stimuli of 0.3 s, which the processor draws in a third of a second for each frame. The
-# pilot plays a bake, with stimuli of 1.5 s. Rests of 30 and 60 s are cut to 2 s, black pauses of 5 s to 1 s,
-# and the two minutes between scenes to 3 s. Units, questions, other pauses and shortest reading times are
-# unchanged.
+# The protocols are shortened, so that a session takes two to four minutes on two cores. Live fluid has 64 or
+# 128 as n_* (number of particles if all are coarsest) and stimuli of 0.3 s, which the processor draws in a
+# third of a second for each frame. The pilot plays a bake, with stimuli of 1.5 s. Rests of 30 and 60 s are
+# cut to 2 s, black pauses of 5 s to 1 s, and the two minutes between scenes to 3 s. Units, questions, other
+# pauses and shortest reading times are unchanged.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=out/window_protocols

@@ -45,8 +45,8 @@ Landing landing_of(ivec2 cell) {
   if (pool > 0.0) {
     const vec2 slope = vec2(rise(middle, surface_at(cell - ivec2(1, 0)), surface_at(cell + ivec2(1, 0))),
                             rise(middle, surface_at(cell - ivec2(0, 1)), surface_at(cell + ivec2(0, 1))));
-    // The map stores heights Y by the position where the ray would meet the floor: the surface is
-    // y = Y(xz - leans y).
+    // The map stores heights Y by the position where the ray would meet the floor: the surface is y = Y(xz - leans y),
+    // with `leans`, the ray's horizontal shift per metre of height.
     vec3 n = normalize(vec3(-slope.x, 1.0 + dot(leans, slope), -slope.y));
     if (dot(n, sun) < 0.05) n = vec3(0.0, 1.0, 0.0);
     const vec3 d = refract(-sun, n, into_water);

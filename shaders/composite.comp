@@ -130,7 +130,7 @@ void main() {
     if (foam.x > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, foam.x);
 #endif
     light = mix(light, shaded, water_cover);
-    // Water nearer than the frame hides the frame. The tolerance keeps the frame visible over water at the wall.
+    // Water nearer than the tank's frame hides it. The tolerance keeps the frame visible over water at the wall.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
 #ifdef FOAM

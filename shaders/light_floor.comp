@@ -1,5 +1,5 @@
-// Sunlight on the floor relative to that without water and obstacles: the product of the scene's picture effects. One
-// invocation per cell of the floor map.
+// Sunlight on the floor relative to that without water and obstacles: the product of the scene's picture effects
+// (shadows, caustics). One invocation per cell of the floor map.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #ifdef SHADOWS

@@ -71,7 +71,8 @@ Crossing cross_tank(vec3 o, vec3 d) {
 
 const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
 
-// Share of a footprint of `width` m that the frame covers around point p of a face of the tank.
+// Share of a footprint of `width` m, around point p of a face of the tank, that the frame along the face's edges
+// covers.
 float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, axis), frame_m, width); }
 
 // Light that arrives along the ray d at point o inside the tank.
@@ -107,7 +108,7 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
   return frame_cover(o + c.enter * d, c.enter_axis, footprint_per_m * c.enter);
 }
 
-// Light that arrives along the ray d at any point o, without the frame on the near side.
+// Light that arrives along the ray d at any point o, without the tank's frame on the side towards o.
 vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);

@@ -1,5 +1,6 @@
-// Splats the particles with large footprints (wide_list.glsl). A team of 8 x 4 invocations splats a group item. The
-// footprint of a tile item is split among 8 x (gl_NumWorkGroups.z / 8) work groups.
+// Splats the particles with large footprints, which splat.comp listed (wide_list.glsl). A team of 8 x 4 invocations
+// splats a group item, a footprint of up to group_limit px per side. A tile item, a larger footprint, is split among 8
+// x (gl_NumWorkGroups.z / 8) work groups.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"

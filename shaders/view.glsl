@@ -5,7 +5,7 @@ layout(std140, binding = 0) uniform ViewBlock {
   vec4 rays;            // slope of the ray through pixel coordinates xy: xy * rays.xz + rays.yw
   ivec4 size;           // xy: width and height, px; zw: those of the thickness grid, cells
   vec4 origin;          // xy: viewport's lower left corner, px; z: near plane, m; w: splatted / particle radius
-  vec4 narrow_range;    // xyz: sigma, delta, mu, particle radii; w: largest reach of the depth filter, px
+  vec4 narrow_range;    // of the depth filter: xyz RenderOptions::filter_sigma_r, _delta_r, _mu_r; w largest reach, px
   vec4 thickness_rule;  // x: units per m; y: m of water per unit; z: px per cell; w: most samples of the depth filter
   vec4 absorption;      // xyz: of red, green and blue, 1/m; w: 1 if the tank has a lid
   vec4 tank;            // xyz: inner size, m, from (0, 0, 0); w: 1 if the walls cut the spheres

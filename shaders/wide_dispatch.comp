@@ -1,4 +1,5 @@
-// Sets the numbers of work groups for the listed particles: those listed in this round, or all of them.
+// Sets the numbers of work groups for the particles listed in wide_list.glsl: those listed in this round of splatting,
+// or (all_items = 1) in both rounds.
 #include "counters.glsl"
 #include "wide_list.glsl"
 layout(local_size_x = 1) in;

@@ -1,6 +1,7 @@
 // List of the particles whose footprints are too large for one invocation, and the numbers of work groups that splat
-// them. One team of invocations splats a group item, many work groups a tile item. The list grows in two rounds; the
-// items of the current round begin at group_start and tile_start.
+// them. One team of invocations splats a group item (a footprint of up to group_limit px per side, splat.comp), many
+// work groups a tile item (a larger footprint). The list grows in two rounds; the items of the current round begin at
+// group_start and tile_start.
 const uint group_row = 32768u;  // most work groups along x; further ones lie along y
 const uint group_teams = 4u;    // group items per work group
 layout(std430, binding = 5) buffer WideList {

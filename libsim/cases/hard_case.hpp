@@ -28,7 +28,7 @@ struct Setting {
   std::vector<Effect> effects = {};
 };
 
-/// One measured quantity with its gate.
+/// One measured quantity with its gate, the limit that it must meet.
 struct Finding {
   enum class Gate { AtMost, AtLeast, Reported };
 
@@ -63,7 +63,7 @@ struct Outcome {
   bool passes() const;
   /// The smallest margin of the findings; at most -1 for a stopped run.
   double margin() const;
-  /// One line: each finding with its gate, and the reason of a stop.
+  /// One line: each finding with its limit, and the reason of a stop.
   std::string text() const;
 };
 

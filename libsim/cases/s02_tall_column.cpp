@@ -16,7 +16,7 @@ Outcome run_s02(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(10 * 10 * height / d / 8);
   if (setting.substeps == 0) options.substeps = 2;
-  // The gates are looser for methods with levels, whose splits and merges keep stirring the water, and for
+  // The limits are looser for methods with levels, whose splits and merges keep stirring the water, and for
   // LoRes, whose column has only 40 layers, each twice as thick.
   const MethodTraits& method = traits_of(setting.method);
   const bool fine = !method.adaptive() && method.start_level == 0;

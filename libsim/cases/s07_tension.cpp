@@ -23,9 +23,9 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
   }
 }
 
-/// Runs the square or the sphere (`what`) and appends its findings to `out`. Gates: no clumps, no energy gain
-/// and no particles outside. The density constraint cannot sustain negative pressure, so that voids open; the
-/// final number of neighbours, which falls with voids, is only reported. least: limit for the distance of
+/// Runs the square or the sphere (`what`) and appends its findings to `out`. Limits apply to clumps, energy
+/// gain and particles outside. The density constraint cannot sustain negative pressure, so that voids open;
+/// the final number of neighbours, which falls with voids, is only reported. least: limit for the distance of
 /// close pairs, in spacings.
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
@@ -33,8 +33,8 @@ void follow(Outcome& out, const std::string& what, const Setting& setting, Scene
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 0.1 * d});
   // `close`: distance to the nearest neighbour that 99 % of the particles reach, the smallest over the
-  // frames. The closest pair has no gate: a single close pair occurs by chance, whereas clumps bring at least
-  // one particle in a hundred close to another.
+  // frames. The closest pair has no limit: a single close pair occurs by chance, whereas clumps bring at
+  // least one particle in a hundred close to another.
   double close = 2, closest = 2, energy = 1;
   const double began = kinetic_energy(start);
   for (int frame = 0; frame < frames_of(setting, seconds) && watch.step(); ++frame) {

@@ -46,8 +46,8 @@ Outcome dam(const Setting& setting) {
   options.n_star = setting.size == Size::Small ? 1024 : 128 * 1024;
   const double seconds = setting.size == Size::Small ? 100.0 / 120 : 2;
   // With levels, single particles are compressed among coarser particles: the largest rho / rho_0 is 1.08 to
-  // 1.35 in runs that differ only in size. So the gate for all frames is looser, and the requirement applies
-  // to 95 % of the frames.
+  // 1.35 in runs that differ only in size. So the limit for all frames is 1.5, and the required limit of 1.2
+  // applies to 95 % of the frames.
   const auto& traits = traits_of(setting.method);
   const bool levels = traits.adaptive();
   Watch watch(with_effects(scene, setting), options, {.density = levels ? 1.5 : 1.2, .outside_m = 0.1 * d});

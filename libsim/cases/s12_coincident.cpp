@@ -19,7 +19,8 @@ Outcome run_s12(const Setting& setting) {
   constexpr double corner = 3 * 1.1 * 2 * d;
   for (const double place : {1.0, corner}) {
     for (const int n : {2, 64, 1000}) {
-      if (place == corner && n == 1000) continue;  // takes long; 1,000 particles behave as at 1 m
+      if (place == corner && n == 1000)
+        continue;  // takes long, and 1,000 particles at the corner behave as those at 1 m
       Scene scene = tank({2, 2, 2}, {2, 2, 2});
       State start;
       const auto at = static_cast<float>(place);
@@ -32,7 +33,8 @@ Outcome run_s12(const Setting& setting) {
       }
       const std::string what = fmt::format("{} at {:.2f} m: ", n, place);
       const double fall = std::sqrt(2 * gravity * 1);
-      // 1,000 particles fly apart at the speed limit, which a gate could not distinguish from a defect.
+      // 1,000 particles fly apart at the speed limit, which a limit on the speed could not distinguish from a
+      // defect.
       Finding fastest = n < 1000 ? at_most(what + "fastest", watch.fastest_m_s(), 1.3 * fall, "m/s")
                                  : reported(what + "fastest", watch.fastest_m_s(), "m/s");
       fastest.asked = fall;

@@ -36,8 +36,8 @@ class Watch {
   int out() const { return out_; }                    ///< largest number of particles outside in a frame
   int short_frames() const { return short_frames_; }  ///< frames that requested more substeps than they got
 
-  /// Findings shared by most cases. The limits of density and speed are the bounds; the limit of the number
-  /// of particles outside is 0.
+  /// Findings shared by most cases. The limits of density and speed are those of Bounds; the limit of the
+  /// number of particles outside is 0.
   Finding density_finding() const;
   Finding speed_finding() const;
   Finding outside_finding() const;
@@ -64,8 +64,8 @@ Scene with_effects(Scene scene, const Setting& setting);
 /// Options with the setting's method, back end and parameters. The method Ours-TSp runs at a constant
 /// tolerance tau = -10 frames/s; the lowest probability that a particle is solved is then 0.67.
 SimulationOptions options_of(const Setting& setting);
-/// Options for a run that starts with the particles `start`. Sets the size of the scene's water and n_* so
-/// that the finest spacing is d (libsim/cases/water.hpp).
+/// Options for a run that starts with the particles `start`. Sets the size of the scene's water and n_*
+/// (number of particles if all are coarsest) so that the finest spacing is d (libsim/cases/water.hpp).
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start);
 /// Simulated time of a frame, s: the setting's or `usual`.
 double frame_dt_of(const Setting& setting, double usual = 1.0 / 60);

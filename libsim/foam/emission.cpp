@@ -31,7 +31,7 @@ struct SumSurface {
 
 /// Computes the outward normal n_i = -h_i sum_j V_j grad W_ij, as if water continued behind walls and in
 /// obstacles, and samples the closing speed of the water divided by the distance (MeetingCells::meeting).
-/// Both are 0 for water that is too slow or too coarse.
+/// Both are 0 for water that is too slow or too coarse to foam.
 template <class Bounds>
 struct Surface {
   const Vec4* position;

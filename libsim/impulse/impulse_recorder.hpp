@@ -24,8 +24,8 @@ struct GaugeBox {
   }
 };
 
-/// Pushes of a wall or within a gauge, by cause: mass in m_* times displacement in m, as integer multiples of
-/// `unit`.
+/// Pushes of a wall or within a gauge, by cause: mass in m_* (mass of a finest particle) times displacement
+/// in m, as integer multiples of `unit`.
 struct WallSum {
   std::uint64_t parts[static_cast<int>(WallPart::count)];
   static constexpr float unit = 1.0f / (1ull << 36);
@@ -74,7 +74,7 @@ struct RecordClamp {
   }
 };
 
-/// Momentum of the water, m_* m/s: totals, and changes by cause.
+/// Momentum of the water, m_* m/s (m_*: mass of a finest particle): totals, and changes by cause.
 struct MomentumSums {
   Momentum now, last, first;  ///< at present, at the last mark() or begin_frame(), at begin_frame()
   Momentum taken;             ///< removed by guards (Guards::braked) up to the last mark()

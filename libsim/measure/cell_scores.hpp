@@ -13,7 +13,7 @@
 
 namespace measure {
 
-/// Metrics that compare one picture with that of HiRes.
+/// Metrics that compare one picture with that of HiRes, the reference method.
 inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, Metric::PsnrOverall,
                                           Metric::PsnrFluid, Metric::SsimStatic};
 

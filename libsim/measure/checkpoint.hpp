@@ -10,7 +10,7 @@
 
 namespace measure {
 
-/// The particles and the picture of HiRes at one frame of its run.
+/// The particles and the picture of a run of HiRes, the reference method, at one frame.
 struct Checkpoint {
   int frame = 0;
   std::vector<sim::ParticleState> state;  ///< ordered by id

@@ -63,7 +63,8 @@ Mask beyond(Mask mask) {
   return mask;
 }
 
-/// Runs all methods from one start in lockstep, and sums their metrics over frames.
+/// Runs HiRes, the reference, and all methods of a block in lockstep, and sums their metrics over frames. The
+/// starts of different numbers `start` differ by an ulp.
 class Film {
  public:
   Film(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,

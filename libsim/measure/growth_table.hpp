@@ -9,7 +9,7 @@
 
 namespace measure {
 
-/// Measurements at one n_*.
+/// Measurements of a run with one n_* (number of particles if all are coarsest).
 struct GrowthRow {
   std::string n_star;
   double particles = 0;        ///< mean over frames

@@ -17,8 +17,8 @@ constexpr double entry = number;                   // bytes per entry of a neigh
 constexpr std::array table{
     // < predicted, count of its list, entries; > lambda, density. Neighbours' positions are in predicted too.
     PassBytes{"density", vec4 + number + 2 * number, entry, true},
-    // < predicted, lambda, count, entries; > the next positions. With momentum the
-    // pass also reads the old values of the next positions.
+    // < predicted, lambda, count, entries; > the next positions. With momentum, which repeats a share of the
+    // last displacement, the pass also reads the old values of the next positions.
     PassBytes{"displacement", vec4 + number + number + vec4, entry, true},
     // < predicted; > count, entries.
     PassBytes{"list neighbours", vec4 + number, entry, true},

@@ -26,7 +26,8 @@ struct PeerRow {
 /// base::Error at file:line for a malformed row, and for a file without rows.
 std::vector<PeerRow> read_peers(const std::filesystem::path& path);
 
-/// ViP-Lab's run at the setting of the other programs.
+/// ViP-Lab's run of the same scene with the same time step. ms_p95: 95th percentile of ms per step;
+/// neighbours, substeps: means.
 struct OurRow {
   PeerRow as_peer;  ///< ms_a_step is the mean; source is the machine
   double ms_p95 = 0, neighbours = 0, substeps = 0;

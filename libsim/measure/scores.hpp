@@ -44,8 +44,9 @@ struct MethodScores {
   const Series& of(Metric metric) const { return series[static_cast<std::size_t>(metric)]; }
 };
 
-/// Scores of the five methods for one scene, n_* and preset, each compared with HiRes. HiRes itself is
-/// compared from perturbed starts.
+/// Scores of the five methods for one scene, n_* (number of particles if all are coarsest) and preset, each
+/// compared with HiRes, the method whose particles are all finest. HiRes from perturbed starts is compared
+/// with HiRes from the unperturbed one.
 struct ScoreBlock {
   std::string scene, n_star;
   sim::Preset preset{};

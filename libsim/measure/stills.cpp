@@ -28,7 +28,8 @@ struct Shot {
   SheetColumn sheet;
 };
 
-/// Picture and masks of HiRes a few frames after a checkpoint: the reference of all comparisons.
+/// Picture and masks of HiRes (the method whose particles are all finest) a few frames after a checkpoint:
+/// the reference of all comparisons.
 struct Reference {
   sim::Picture picture;
   Mask fluid;

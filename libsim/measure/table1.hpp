@@ -1,7 +1,7 @@
 #pragma once
-/// The protocol of Table 1: its parameters, the checkpoints of HiRes (checkpoint_source.cpp), the still cells
-/// (stills.cpp), and SSIM-cumul and both flickers, which compare all methods frame by frame with HiRes
-/// (film.cpp).
+/// The protocol of Table 1: its parameters, the checkpoints of the reference method HiRes
+/// (checkpoint_source.cpp), the scores of single pictures (stills.cpp), and SSIM-cumul and both flickers,
+/// which compare all methods frame by frame with HiRes (film.cpp).
 
 #include <functional>
 #include <string>
@@ -48,7 +48,8 @@ inline sim::SimulationOptions run_options(const Table1Options& options, const si
   return out;
 }
 
-// Checkpoints from a run of HiRes, or from the files of an earlier run.
+// Checkpoints from a run of HiRes (the reference method, all particles finest), or from the files of an
+// earlier run.
 
 /// Frames of the scene's checkpoints that the options select.
 std::vector<int> checkpoint_frames(const sim::CellScene& scene, const Table1Options& options);
@@ -63,7 +64,7 @@ std::vector<std::string> stored_digests(const sim::CellScene& scene, const CellS
 std::vector<Checkpoint> take_checkpoints(const sim::CellScene& scene, const CellSize& size,
                                          const Table1Options& options, Onlooker& eye);
 
-// Still cells: from one state of HiRes to each method's picture a few frames later.
+// Scores of single pictures: from one state of HiRes to each method's picture a few frames later.
 
 /// Quality of a method's starts after the projections that relax them.
 struct StartQuality {
@@ -86,13 +87,14 @@ ScoreBlock empty_block(const sim::CellScene& scene, const CellSize& size, sim::P
 /// Number of runs that run_stills() makes, for a progress line.
 std::size_t still_runs(const sim::CellScene& scene, const Table1Options& options, std::size_t presets);
 
-/// The protocol: HiRes runs from its settled state. At each checkpoint every method starts from that state,
-/// coarsened to the method's targets and projected, looks at one gaze point and at the checkpoint's picture,
-/// and is compared `frames_after` frames later with HiRes from the same checkpoint. Repeats perturb the state
-/// by an ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from perturbed states shows
-/// the differences that chaos alone causes. The masks of the fovea and of salient pixels come from the HiRes
-/// picture and its saliency with Preset::Tuned, the same for all methods. The mask of the fluid is
-/// grown_union() of the water in both pictures. Needs a current context; calls `done` after each run.
+/// The protocol of single pictures: HiRes, the reference method, runs from its settled state. At each
+/// checkpoint every method starts from that state, coarsened to the method's targets and projected, looks at
+/// one gaze point and at the checkpoint's picture, and is compared `frames_after` frames later with HiRes
+/// from the same checkpoint. Repeats perturb the state by an ulp (checkpoint.hpp) and reseed the choice of
+/// active particles; HiRes from perturbed states shows the differences that chaos alone causes. The masks of
+/// the fovea and of salient pixels come from the HiRes picture and its saliency with Preset::Tuned, the same
+/// for all methods. The mask of the fluid is grown_union() of the water in both pictures. Needs a current
+/// context; calls `done` after each run.
 StillResult run_stills(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
                        const std::vector<sim::Preset>& presets, const std::function<void()>& done,
                        SheetWriter& sheets);

@@ -60,8 +60,8 @@ struct Substeps {
 // Totals of a scene's effects over a run.
 
 /// {"foam": {...}, "heat": {...}} for the listed effects with a coefficient above 0; an empty object without
-/// any. Foam: numbers of diffuse particles, and the volume of all particles emitted, m3. Heat: kelvin above
-/// the effect's reference times m_*.
+/// any. Foam: numbers of diffuse particles, and the volume of all particles emitted, m3. Heat, K m_*: kelvin
+/// above the effect's reference times mass in units of m_*, the mass of a finest particle.
 base::Json effect_books(const sim::Scene& scene, const sim::FrameReport& report);
 /// One line per effect for readers, as `vip-bench frame` prints them.
 std::string in_words(const base::Json& books);

@@ -36,8 +36,8 @@ struct ViewTargets {
   /// Allocates the buffers with an entry per particle for `count` particles.
   void follow(std::int64_t count);
 
-  // Implement the functions of FluidRenderer. The caller sets a memory barrier between the passes and the
-  // reads.
+  // Implement the functions of FluidRenderer with the same names. The caller sets a memory barrier between
+  // the passes and the reads.
   void read_depth(std::vector<float>& out) const;
   void read_picture(const RenderOptions& options, GBuffer& out) const;
   GBuffer read_gbuffer(const RenderOptions& options) const;

@@ -1,6 +1,6 @@
 #pragma once
-/// Checks of a scene at a given n_*, before memory is allocated: water, substeps, swinging obstacles, tank
-/// and memory.
+/// Checks of a scene at a given n_* (number of particles if all are coarsest), before memory is allocated:
+/// water, substeps, swinging obstacles, tank and memory.
 
 #include <cstdint>
 #include <optional>

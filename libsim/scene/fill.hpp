@@ -1,5 +1,6 @@
 #pragma once
-/// Start positions of the particles, by one rule for all scenes and every n_*.
+/// Start positions of the particles, by one rule for all scenes and every n_* (number of particles if all are
+/// coarsest).
 
 #include <vector>
 

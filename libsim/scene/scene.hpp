@@ -106,7 +106,8 @@ struct Scene {
   int settle_frames = 0;
   int solver_iterations = 4;
   int min_substeps = 2;
-  /// Maximum distance of the fastest particle per substep, as a share of the finest h.
+  /// Maximum distance of the fastest particle per substep, as a share of the support h of the finest
+  /// particles.
   double courant = 0.5;
   /// Kinematic viscosity of the water; < 0 = from the particles' size (viscosity_of in
   /// libsim/scene/fill.hpp).

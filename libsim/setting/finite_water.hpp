@@ -17,8 +17,8 @@ GuardCounts sum(const GuardCounts& a, const GuardCounts& b);
 /// Text with the guards that stepped in and their counts; empty if none did. Pushes of walls and obstacles,
 /// waiting nozzles and lost gazes are normal and left out.
 std::string in_words(const GuardCounts& met);
-/// Prints the guards that stepped in and the first divergence in one line on standard error, after `place`;
-/// prints nothing without either.
+/// Prints the guards that stepped in and the first divergence (first sign that the run became unstable) in
+/// one line on standard error, after `place`; prints nothing without either.
 void print_guards(const std::string& place, const GuardCounts& met, const std::optional<Divergence>& first);
 /// Prints the guards and the first divergence of a simulation's whole run.
 void print_guards(const std::string& place, Simulation& fluid);
