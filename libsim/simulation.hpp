@@ -165,10 +165,11 @@ struct SubstepCount {
 /// Times of the last frame's parts, ms, divided as in Table 2 of ViP-Fluid, whose equations the comments
 /// name.
 struct PartTimes {
-  double saliency_ms = 0;    ///< Eq. 1-9
-  double levels_ms = 0;      ///< grading, splitting, merging
-  double activation_ms = 0;  ///< Eq. 12-14 and the velocity grid
-  double solve_ms = 0;       ///< all other passes
+  double saliency_ms = 0;  ///< Eq. 1-9
+  double levels_ms = 0;    ///< grading, splitting, merging
+  /// choice of the particles to solve, Eq. 12-14, and the velocity grid, which moves the others
+  double activation_ms = 0;
+  double solve_ms = 0;  ///< all other passes
 };
 
 /// A pass of the compiled schedule.
@@ -269,8 +270,8 @@ class Simulation {
   virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
-  /// Changes the forced targets from the next frame on; base::Error if the run was made without forced
-  /// targets.
+  /// Replaces SimulationOptions::forced_targets from the next frame on; base::Error if the run was made
+  /// without forced targets.
   virtual void force_targets(const TargetRegion&) {}
   virtual LiveNumbers live_numbers() const { return {}; }
   /// Changes these numbers from the next frame on; alpha takes effect at the next level update. base::Error

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tests vip-view's panel with real key events on a virtual screen: the schedule is shown and hidden, and
-# effects are turned off and on while the fluid runs. Fails if a picture or a printed line is not as expected.
+# Tests vip-view's panel with real key events on a virtual screen: the schedule (the list of the solver's
+# passes) is shown and hidden, and effects are turned off and on while the fluid runs. Fails if a picture or a
+# printed line is not as expected.
 # usage: scripts/window_view.sh [FOLDER]    default: out/window_view. Takes half a minute.
 # Takes vip-view from $VIP_VIEW, else from build/dev. Pictures and logs go to FOLDER.
 set -euo pipefail

@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform ViewBlock {
   ivec4 size;           // xy: width and height, px; zw: those of the thickness grid, cells
   vec4 origin;          // xy: viewport's lower left corner, px; z: near plane, m; w: splatted / particle radius
   vec4 narrow_range;    // of the depth filter: xyz RenderOptions::filter_sigma_r, _delta_r, _mu_r; w largest reach, px
-  vec4 thickness_rule;  // x: units per m; y: m of water per unit; z: px per cell; w: most samples of the depth filter
+  vec4 thickness_rule;  // x: units per m of chord; y: m of water per unit; z: px per cell; w: most filter samples
   vec4 absorption;      // xyz: of red, green and blue, 1/m; w: 1 if the tank has a lid
   vec4 tank;            // xyz: inner size, m, from (0, 0, 0); w: 1 if the walls cut the spheres
 };

@@ -117,9 +117,9 @@ class BakeWriter {
   BakeWriter(const BakeWriter&) = delete;
   BakeWriter& operator=(const BakeWriter&) = delete;
 
-  /// Adds the next frame: its particles, and the solver's account of it (Simulation::account). temperature_k:
-  /// per particle, K above the header's reference_k; required if the header has reference_k, otherwise it
-  /// must be empty.
+  /// Adds the next frame: its particles, and the solver's account of it (Simulation::account: particle
+  /// counts, temporal acceleration, guard counts). temperature_k: per particle, K above the header's
+  /// reference_k; required if the header has reference_k, otherwise it must be empty.
   void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account,
                  const std::vector<float>& temperature_k = {});
   /// Adds the foam of the last added frame, before its picture; required if the header's max_foam is above 0.

@@ -69,7 +69,8 @@ struct ParticleLayout {
 };
 
 /// Decodes the bytes of encode_particles(). Refuses (base::Error at `place`) counts beyond `max_particles`
-/// before it allocates, and data that decode to a size other than stated. `scratch` is reused between calls.
+/// before it allocates, and data that decode to another size than the counts require. `scratch` is reused
+/// between calls.
 void decode_particles(ByteSpan payload, const ParticleLayout& layout, const std::string& place,
                       Bytes& scratch, BakeFrame& out);
 

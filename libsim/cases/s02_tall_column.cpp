@@ -41,8 +41,9 @@ Outcome run_s02(const Setting& setting) {
                          "spacings of the start");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
-                        // Detects the defect of an earlier solver that had no pre-stabilisation at the
-                        // frame's beginning: its lattice shot up at 7 m/s, and the centre rose by 41 %.
+                        // Detects the defect of an earlier solver that had no pre-stabilisation (projections
+                        // at the frame's beginning that change positions only): its lattice shot up at 7 m/s,
+                        // and the centre rose by 41 %.
                         at_most("v_rms", fastest_rms, 2.5, "m/s"),
                         reported("v_rms at last", rms_speed(watch.state()), "m/s")});
 }

@@ -37,7 +37,7 @@ OurRow our_row(const base::Json& result, double dt_s, int iterations, const std:
 
 /// The peers' rows, then ours.
 figures::TextTable peers_table(const std::vector<PeerRow>& peers, const OurRow& ours);
-/// How to read the table, with a warning unless every peer's source names our machine.
+/// A note on how to read the table, with a warning unless every peer's source names our machine.
 std::string peers_note(const std::vector<PeerRow>& peers, const OurRow& ours);
 base::Json to_json(const std::vector<PeerRow>& peers);
 

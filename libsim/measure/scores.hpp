@@ -34,7 +34,7 @@ const std::array<MetricTraits, metric_count>& all_metrics();
 /// compared pixels were equal; a value is NaN if its mask was too small.
 struct Series {
   std::vector<stats::ImageScore> cells;
-  std::size_t repeats = 1;  ///< number of consecutive cells that are not independent
+  std::size_t repeats = 1;  ///< consecutive cells that are not independent: repeats of one gaze point
 };
 
 struct MethodScores {

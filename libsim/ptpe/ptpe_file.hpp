@@ -23,7 +23,7 @@ struct PtpeBandPoint {
 struct PtpeFile {
   static constexpr int format_version = 2;  ///< format 1, without a band, can be read too
 
-  stats::PtpeModel model;            ///< a in frames/s, b in s/frame, and the kind of mean used as predictor
+  stats::PtpeModel model;            ///< a in frames/s, b in s/frame, and which mean of the frame rate mu is
   double level = 4;                  ///< satisfaction score on the curve mu(delta), in [1, 7]
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};

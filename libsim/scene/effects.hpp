@@ -118,7 +118,7 @@ const OptionTraits& traits_of(EffectOption option);
 /// has none, of the effect that it needs. None if neither effect has the option.
 std::optional<EffectOption> coarsest_level_of(EffectKind kind);
 
-/// One row of the registry.
+/// One row of the registry SIM_EFFECTS: the properties of an effect.
 struct EffectTraits {
   const char* word;
   const char* key;  ///< key of the coefficient; ends in the unit

@@ -105,8 +105,8 @@ std::optional<double> height_below(const Obstacle& o, const Pose& pose, double x
   return {};
 }
 
-/// The underside of an obstacle that closes the tank: its heights at n x n points of the floor. The outermost
-/// points lie one spacing inside the walls.
+/// The underside of an obstacle that closes the tank: its heights above n x n points of the floor. The
+/// outermost points lie one spacing inside the walls.
 class Underside {
  public:
   Underside(const Scene& scene, double spacing, int n)

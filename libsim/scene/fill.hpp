@@ -13,7 +13,8 @@ namespace sim {
 double water_volume_m3(const Scene& scene);
 double volume_m3(const WaterBlock& block);
 
-/// Error text for a gate in a scene with several blocks of water, and its advice.
+/// Error text for a gate (walls that enclose the water until it has settled) in a scene with several blocks
+/// of water, and its advice.
 inline constexpr const char* gate_of_several = "encloses one block of water, and there are several";
 inline constexpr const char* no_gate = "write gate = false";
 

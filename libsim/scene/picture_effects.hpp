@@ -26,7 +26,7 @@ enum class PictureEffectKind {
 };
 inline constexpr std::size_t picture_effect_count = static_cast<std::size_t>(PictureEffectKind::count);
 
-/// One row of the registry.
+/// One row of the registry SIM_PICTURE_EFFECTS: the properties of a picture effect.
 struct PictureEffectTraits {
   const char* word;
   const char* source;
