@@ -95,8 +95,8 @@ until_shown played
 sleep 1
 finish
 expect "events without" "" "$(mirrored)"
-# The timing is printed and not checked, because it depends on the load. On a quiet machine the two lines are
-# alike.
+# The timing is printed and not checked, because it depends on the load. On a quiet machine the lines with and
+# without the mirror are alike.
 ask "select 'timing of ' || participant || iif(participant = 'P02', ' without', ' with') || ' the mirror: ' || verdict || ', ' || late_frames ||
   ' of ' || frames || ' frames late, worst ' || round(worst_late_ms, 2) || ' ms' from presentation join trial using (trial_id)
   join session using (session_id) where presentation.state = 'played' order by participant" | sed 's/^/        /'

@@ -59,7 +59,7 @@ recomputed() {
       mean = $1; sd = $2; end = $3; onset = $4; late += $5 > 500000; if ($5 > worst) worst = $5 }
     END { tell() }'
 }
-# Prints the same values as the certificate gives them.
+# Prints the rows of recomputed() with the numbers that the certificate gives.
 printed() { awk '$3 == 1 && NF >= 13 { print $1, $2, $4, $6, $8, $9 }' "$out/$name.certificate"; }
 differences() {  # prints the rows that differ by more than one in the last printed digit
   paste -d ' ' "$out/$name.frames" <(printed) | awk 'NF != 12 { print; next }

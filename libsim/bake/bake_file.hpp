@@ -46,7 +46,7 @@ struct BakedView {
   /// Assumed gaze: "middle" (of the picture), "scene" (the scene's gaze keys) or "none" (the method follows
   /// no gaze). Empty = unknown (formats before 3).
   std::string gaze;
-  std::vector<GazeKey> gaze_path;  ///< as in Scene::gaze; empty = no path
+  std::vector<GazeKey> gaze_path;  ///< frames and points of the gaze, see GazeKey; empty = no path
 
   bool drawn() const { return width_px > 0; }
 };

@@ -60,7 +60,7 @@ void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
                       int zstd_level, const std::string& place, Bytes& out);
 
-/// How a file stores its particles.
+/// The properties of a bake file that are needed to decode its particles.
 struct ParticleLayout {
   std::uint32_t format = 0;  ///< format of the file
   std::vector<float> radius_by_level_m;

@@ -14,7 +14,7 @@ namespace measure {
 
 /// The properties that identify a checkpoint.
 struct CheckpointOf {
-  std::string scene;         ///< as in the paper's tables
+  std::string scene;         ///< name in the paper's tables, such as SingleDam
   std::string scene_sha256;  ///< of the scene's file
   std::int64_t n_star = 0;
   int frame = 0;

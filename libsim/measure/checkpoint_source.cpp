@@ -43,7 +43,7 @@ std::vector<Checkpoint> take_checkpoints(const sim::CellScene& scene, const Cell
     }
     return out;
   }
-  // The choice of the preset has no effect: HiRes runs alike with each.
+  // The choice of the preset has no effect: runs of HiRes are equal with each preset.
   const auto hires = sim::make_simulation(
       scene.scene, run_options(options, scene, size, sim::Preset::Tuned, sim::MethodKind::HiRes));
   for (int frame = 1; !frames.empty() && frame <= frames.back(); ++frame) {

@@ -54,8 +54,8 @@ inline sim::SimulationOptions run_options(const Table1Options& options, const si
 /// Frames of the scene's checkpoints that the options select.
 std::vector<int> checkpoint_frames(const sim::CellScene& scene, const Table1Options& options);
 
-/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error as by
-/// read_checkpoint().
+/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error if
+/// read_checkpoint() refuses one.
 std::vector<std::string> stored_digests(const sim::CellScene& scene, const CellSize& size,
                                         const Table1Options& options);
 

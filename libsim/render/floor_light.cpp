@@ -16,7 +16,7 @@ constexpr float height_steps = 16777216;  // fixed-point units (24 bits) in four
 // shaders/light.glsl, flat water shifts light by 0.14 along x and 0.18 along z towards the sun; the rest
 // allows for waves.
 constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
-constexpr float caustic_units = 65536;  // light units of a cell without water, as in the shaders
+constexpr float caustic_units = 65536;  // light units of a cell without water (caustic_units.glsl)
 constexpr int border_cells = 8;         // additional surface cells per side, for the smoothing
 constexpr float smoothing_r =
     2;  // standard deviation, particle radii; waves 11 radii long keep half their height

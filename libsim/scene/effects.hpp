@@ -166,7 +166,7 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
                                  const std::vector<Effect>& kept = {});
 /// The effect kind that a word of a scene file names; none for an unknown word.
 std::optional<EffectKind> effect_named(const std::string& word);
-/// Writes tables that read_effects() reads back as the same effects; omits dropped effects.
+/// Writes tables that read_effects() reads back as the same effects; omits effects with the coefficient 0.
 std::string format_effects(const std::vector<Effect>& effects);
 /// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
 std::string effects_in_words(const std::vector<Effect>& effects);

@@ -22,8 +22,8 @@ inline constexpr const char* no_gate = "write gate = false";
 /// the coarsest level.
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
-  double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for the others
-  int level = 0;  ///< level of these particles: 3 (mass 8 m_*) for LoRes, 0 (m_*) for the others
+  double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for other methods
+  int level = 0;  ///< level of these particles: 3 (mass 8 m_*) for LoRes, 0 (m_*) for other methods
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 

@@ -30,8 +30,8 @@ struct Poured {
   double length_m = 0;
   std::int64_t layers = 0;
 };
-/// What a nozzle has poured before `frame` if its layers have the same spacing throughout. The result depends
-/// only on the arguments, so that a run from a checkpoint pours like the original run.
+/// Length and number of layers that a nozzle has poured before `frame` if all layers have the same spacing.
+/// The result depends only on the arguments, so that a run from a checkpoint pours like the original run.
 Poured poured_before(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s);
 
 /// The layers that pass the mouth within one frame.

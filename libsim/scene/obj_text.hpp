@@ -30,7 +30,7 @@ using ObjFailure = std::function<void(int line, const std::string& problem, cons
 /// an edge that is not shared by two faces in opposite directions, a surface that faces inwards.
 Triangles read_obj(std::string_view text, const ObjFailure& fail);
 
-/// The same surface as compact text: only vertices and triangles, one per line.
+/// The surface `mesh` as compact OBJ text: only vertices and triangles, one per line.
 std::string obj_of(const Triangles& mesh);
 
 /// Volume enclosed by the surface; negative if it faces inwards.

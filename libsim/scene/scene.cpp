@@ -65,7 +65,7 @@ Camera camera(const base::TomlTable& table, const Vec3d& origin_m) {
   return out;
 }
 
-/// The same view from three times the distance.
+/// The camera `view`, moved away from its target to three times the distance.
 Camera overview_of(const Camera& view) {
   Camera out = view;
   for (std::size_t k = 0; k < 3; ++k)

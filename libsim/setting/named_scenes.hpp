@@ -9,7 +9,7 @@
 namespace sim {
 
 struct CellScene {
-  std::string name;  ///< as in the paper's tables
+  std::string name;  ///< name in the paper's tables, such as SingleDam
   Scene scene;
 };
 /// One scene by name, or "all". base::Error, naming the known scenes, for any other word.

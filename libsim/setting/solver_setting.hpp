@@ -61,7 +61,7 @@ bool turns(SolverKnob knob, MethodKind method);
 std::string value_words(SolverKnob knob, double value);
 
 /// "SingleDam Ours n_star=32768 frames_per_s=60 ...", with the knobs that have an effect with the method:
-/// settings with equal texts run alike.
+/// settings with equal texts give equal runs.
 std::string to_text(const SolverSetting& setting);
 
 /// The setting that a program with these options runs. With temporal acceleration, Beta is NaN unless
