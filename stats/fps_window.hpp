@@ -1,6 +1,6 @@
 #pragma once
 /// Mean and standard deviation of the frame rate. The frame pacing, the study's records and the solver's
-/// tolerance tau use these functions.
+/// tolerance tau (the mean frame rate minus the one that is just satisfactory) use these functions.
 
 #include <cstddef>
 #include <deque>

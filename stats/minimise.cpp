@@ -48,7 +48,8 @@ class Descent {
 
  private:
   /// Line search: the first of the step lengths 1, 1/2, 1/4 ... along `direction` that lowers the value by at
-  /// least `decrease` * length * |slope|. Returns nothing if no length above 1e-12 does.
+  /// least `decrease` * length * |slope|, where `slope` is the value's derivative along `direction`. Returns
+  /// nothing if no length above 1e-12 does.
   std::optional<Point> step(const Vector& direction, double slope, double decrease) const;
   Vector hessian() const;
   void update_inverse(Vector& inverse, const Vector& s, const Vector& y) const;

@@ -75,9 +75,10 @@ struct TestOutcome {
 
 /// Tests one value of each participant. Tests of differences: a[i] and b[i] are of one participant; in a
 /// comparison with a constant, every value of `b` is the constant. of_groups(): a and b are different
-/// participants. Sums are NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths
-/// of paired values, a margin that is not above 0, a margin with any test but Tost and one-sided t tests, and
-/// Tost without a margin or with a side. Refused where the test is undefined for the data.
+/// participants. A value is a mean held as sum and count (ExactMean); a sum of NaN marks a missing value.
+/// std::invalid_argument: of_answers(), unequal lengths of paired values, a margin that is not above 0, a
+/// margin with any test but Tost and one-sided t tests, and Tost without a margin or with a side. Refused
+/// where the test is undefined for the data.
 Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const ExactMean> a,
                                  std::span<const ExactMean> b);
 

@@ -20,7 +20,7 @@ struct TrialRecord {
   std::string participant;
   int visit = 1;
   int position = 0;  ///< 0-based
-  /// Verdict on the frame timing; for a pair, the worse of its two intervals.
+  /// Verdict on the frame timing; for a trial that shows a pair of methods, the worse of the two intervals.
   TrialTiming timing = TrialTiming::Unjudged;
   std::string timing_reason;    ///< why the verdict is not Pass
   bool interrupted = false;     ///< excluded by the protocol's interruption policy

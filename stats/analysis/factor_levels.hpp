@@ -21,7 +21,8 @@ struct FactorPlace {
   int level = 0, rest = 0;
 };
 
-/// Task 2: preference for level a over level b, from pairs that differ only in the factor.
+/// Task 2 (choices between two treatments): preference for level a over level b, from pairs that differ only
+/// in the factor.
 struct LevelPreference {
   int a = 0, b = 0;
   int n = 0, k = 0;  ///< answers, and how many of them chose a
@@ -35,7 +36,7 @@ struct LevelPreference {
   std::optional<double> p() const;
 };
 
-/// Task 1: mean score of level a minus that of level b at one n_* (nominal number of particles).
+/// Task 1 (ratings): mean score of level a minus that of level b at one n_* (nominal number of particles).
 struct LevelDifference {
   int n_star = 0, a = 0, b = 0;
   std::size_t participants = 0;  ///< participants who judged all treatments of both levels

@@ -105,8 +105,8 @@ void set_paper(ScoreContrast& contrast, const Family& family) {
 
 double ScoreDifference::p(Alternative side, double null) const { return student_p(t(null), df, side); }
 
-/// The contrast of methods a and b at one n_*, with the margin of the claim or the table. `model` is the
-/// mixed model of all answers of the table; null for a paired test.
+/// The contrast of methods a and b at one n_*, with the claim's margin for this score or, if it has none, the
+/// table's. `model` is the mixed model of all answers of the table; null for a paired test.
 ScoreContrast score_contrast(const MethodClaim& claim, const ScoreTable& table,
                              const Result<MixedScores>* model, int n_star, const std::string& a,
                              const std::string& b) {

@@ -1,7 +1,8 @@
 #pragma once
-/// Confirmatory tests of hypotheses about methods. Each claim has its own family of tests, and the plan's
-/// rule decides on it. Each result also contains the verdict that the paper's own procedure, without
-/// correction for multiple tests, gives on the same data.
+/// Confirmatory tests of hypotheses about methods. The tests of one claim form a family; the analysis plan's
+/// rule (each test at alpha, or each after Holm) decides on the claim. If a paper tested the claim, the
+/// result also contains the verdict that the paper's own procedure, without correction for multiple tests,
+/// gives on the same data.
 
 #include <array>
 #include <optional>
@@ -20,7 +21,7 @@ enum class HypothesisStatus {
   Supported,        ///< every test of the family holds under the plan's rule
   PartlySupported,  ///< some tests hold after Holm
   NotSupported,     ///< no test holds after Holm
-  NotTestable,      ///< the study's conditions do not allow the test
+  NotTestable,      ///< the claim needs gaze, which was not tracked in every session
   NoData,           ///< no test could be computed
 };
 /// The status in words: "supported", "partly supported", ...
@@ -29,7 +30,7 @@ const char* status_name(HypothesisStatus status);
 struct HypothesisTest {
   std::string label;
   std::string method;         ///< "paired t test", "t test of the mixed model", ...
-  std::string score, n_star;  ///< Task 1 only
+  std::string score, n_star;  ///< Task 1 (ratings) only: the score's code, the nominal number of particles
   std::string a, b;           ///< methods
   std::size_t n = 0;     ///< Task 1: participants with both methods, or in the mixed model; Task 2: answers
   std::optional<int> k;  ///< Task 2: number of choices of a
@@ -53,7 +54,7 @@ struct HypothesisTest {
   /// pairs that the claims of Task 2 compare (five in the paper's Fig. 10), and over all pairs (ten with five
   /// methods).
   std::optional<double> p_holm_of_five, p_holm_of_ten;
-  /// Shift of missing answers that would change `holds`; set by add_tipping_points().
+  /// By how many points missing answers must be worse to change `holds`; set by add_tipping_points().
   std::optional<Result<TippingPoint>> tipping;
 };
 
@@ -74,15 +75,16 @@ struct Hypothesis {
   DecisionRule decision = DecisionRule::IntersectionUnion;
   bool one_sided = false;
   std::string rule;
-  HypothesisStatus status = HypothesisStatus::NoData;
-  HypothesisStatus status_if_testable = HypothesisStatus::NoData;
-  std::string status_text;  ///< the verdict in one sentence
-  int confirmed = 0;        ///< number of tests that hold
-  int confirmed_holm = 0;   ///< number of tests that hold after Holm
+  HypothesisStatus status = HypothesisStatus::NoData;  ///< NotTestable, or else status_if_testable
+  HypothesisStatus status_if_testable = HypothesisStatus::NoData;  ///< the verdict of the tests alone
+  std::string status_text;                                         ///< the verdict in one sentence
+  int confirmed = 0;                                               ///< number of tests that hold
+  int confirmed_holm = 0;                                          ///< number of tests that hold after Holm
   /// p of the whole claim: the largest p of its tests (after Holm if the plan decides by Holm); 1 if a test
   /// has no p or its estimate lies in the other direction. Empty if no test has a p.
   std::optional<double> p_claim;
-  std::optional<double> p_claim_of_six;  ///< p_claim as corrected by correct_over_claims()
+  /// p_claim after Holm over all claims of the plan; set by correct_over_claims().
+  std::optional<double> p_claim_of_six;
   std::vector<HypothesisTest> tests;
   std::optional<PairedVerdict> paired;
   std::string paper_rule, paper_text;  ///< empty: the claim has no paper
@@ -90,12 +92,12 @@ struct Hypothesis {
   std::string paper_published;  ///< the paper's verdict on its own data
 };
 
-/// Tests the claims of Task 1 within each n_*. The plan chooses paired t tests over participants or the mixed
-/// model of each score; with the mixed model the paired tests are reported too. The plan also chooses
-/// one-sided or two-sided tests. In the two-sided case p of equivalence is twice the larger one-sided p, p of
-/// non-inferiority is the two-sided p against its margin, and all intervals have the confidence 1 - alpha.
-/// `untestable`: why claims that need gaze cannot be tested; empty if they can. The paper's rule is always
-/// applied to the paired tests.
+/// Tests the claims of Task 1 (ratings) within each n_* (nominal number of particles). The plan chooses
+/// paired t tests over participants or the mixed model of each score; with the mixed model the paired tests
+/// are reported too. The plan also chooses one-sided or two-sided tests. In the two-sided case p of
+/// equivalence is twice the larger one-sided p, p of non-inferiority is the two-sided p against its margin,
+/// and all intervals have the confidence 1 - alpha. `untestable`: why claims that need gaze cannot be tested;
+/// empty if they can. The rule of a claim's paper is always applied to the paired tests.
 std::vector<Hypothesis> task1_hypotheses(std::span<const MethodClaim> claims, const ScoreTable& realism,
                                          const ScoreTable& sickness, const AnalysisPlan& plan,
                                          const std::string& untestable);
@@ -105,8 +107,9 @@ std::vector<Hypothesis> task1_hypotheses(std::span<const MethodClaim> claims, co
 /// they are. Tests of a score that no table of `tables` has are skipped.
 void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
-/// Tests the claims of Task 2 by exact binomial tests, or by share_test if PairPreference::shares is set.
-/// `untestable`: why claims that need gaze cannot be tested.
+/// Tests the claims of Task 2 (choices between two methods) by exact binomial tests. Where
+/// PairPreference::shares is set, since people answered a pair more than once, share_test() of each person's
+/// share of choices replaces the binomial test. `untestable`: why claims that need gaze cannot be tested.
 std::vector<Hypothesis> task2_hypotheses(std::span<const MethodClaim> claims,
                                          std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,

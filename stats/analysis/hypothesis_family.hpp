@@ -32,6 +32,8 @@ struct Family {
 Family begin_family(const MethodClaim& claim, const AnalysisPlan& plan, const std::string& untestable);
 
 /// True if the procedure of the claim's paper counts a test as confirmed; false without a paper.
+/// `significant`: the uncorrected p is below alpha. `right`: the estimate favours the first of the two
+/// methods.
 bool confirmed_as_in_paper(const MethodClaim& claim, bool significant, bool right);
 
 /// Parts of a decision rule in words, as in "paired t tests, two-sided, all significant and in the direction

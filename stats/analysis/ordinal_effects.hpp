@@ -1,6 +1,6 @@
 #pragma once
-/// Task 1's single answers as ordered categories: a cumulative-link model of the method with a random effect
-/// of the participant, within one n_*.
+/// The single answers of Task 1 (ratings) as ordered categories: a cumulative-link model of the method with a
+/// random effect of the participant, within one n_* (nominal number of particles).
 
 #include <array>
 #include <optional>

@@ -139,8 +139,8 @@ struct AnalysisPlan {
   RepeatedPairs repeated_pairs = RepeatedPairs::Share;
   int resamples = 10000;  ///< number of bootstrap resamples
   std::uint64_t seed = 1;
-  /// Scores at which a pilot's curve is fitted, by question id. The protocol sets the score of questions that
-  /// are not listed.
+  /// By question id: the mean score at which a pilot's curve of just satisfactory frame rates is fitted. The
+  /// protocol sets it for questions that are not listed.
   std::map<std::string, double> levels = {};
   PilotRules pilot = {};  ///< how to treat reverse coders, drift and lapses in a pilot
   std::vector<DeclaredHypothesis> hypotheses = {};  ///< hypotheses of studies with factors

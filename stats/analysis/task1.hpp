@@ -1,6 +1,6 @@
 #pragma once
-/// Task 1 (ratings): summaries of each method's scores, comparisons of all pairs of methods within each n_*,
-/// and omnibus tests.
+/// Task 1 (ratings): summaries of each method's scores, comparisons of all pairs of methods within each n_*
+/// (nominal number of particles), and omnibus tests.
 
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@
 
 namespace stats {
 
-/// One box of the box plots (paper, Fig. 9). Indices are those of the ScoreTable.
+/// One box of the box plots (ViP-Fluid paper, Fig. 9). Indices are those of the ScoreTable.
 struct MethodCell {
   int n_star = 0, method = 0;
   std::vector<double> values;    ///< participants' means, without missing ones

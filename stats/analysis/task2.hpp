@@ -88,7 +88,7 @@ struct IntervalBias {
   Result<OneSampleTTest> by_participant = Refusal{"not computed"};
   /// Set if all shares are equal, which leaves no t: the exact sign test that replaces the t test.
   std::optional<Unanimous> all_alike;
-  Result<OrderBias> model = Refusal{"not computed"};  ///< within the Bradley-Terry model
+  Result<OrderBias> model = Refusal{"not computed"};  ///< the bias as a term of the Bradley-Terry model
 };
 
 struct ParticipantTriads {

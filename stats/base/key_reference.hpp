@@ -10,7 +10,8 @@ namespace base {
 struct KeyReference {
   std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] that holds the key
   std::string key;
-  std::string type;      ///< one of the texts of AskedKey::type, or several joined by " or "
+  std::string type;      ///< kind of value, such as "number" or "text", in the words of AskedKey::type
+                         ///< (toml.hpp); several are joined by " or "
   std::string values;    ///< range or choices; empty: any
   std::string fallback;  ///< value of an absent key; empty: the key is required
   std::string meaning;

@@ -204,7 +204,9 @@ class Walk {
   std::vector<Bracket> open_;
   int depth_ = 0, header_depth_ = 0;
   bool key_ = true, header_ = false;
-  bool value_ = false;  // a value is expected and has begun
+  /// Outside keys: true if a value has begun, or a table header has ended, since the last '=', ',' or opening
+  /// bracket.
+  bool value_ = false;
 };
 
 }  // namespace

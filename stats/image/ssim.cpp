@@ -67,7 +67,7 @@ void index_row(const double* mean, int width, double* out) {
     const double variance_x = mean[2 * width + i] - mx * mx;
     const double variance_y = mean[3 * width + i] - my * my;
     const double covariance = mean[4 * width + i] - mx * my;
-    // With C3 = C2 / 2, contrast and structure combine into one factor (Eq. 13).
+    // With C3 = C2 / 2, contrast and structure combine into one factor (Wang et al. 2004, Eq. 13).
     out[i] = (2 * mx * my + c1) * (2 * covariance + c2) /
              ((mx * mx + my * my + c1) * (variance_x + variance_y + c2));
   }

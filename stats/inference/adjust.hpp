@@ -30,7 +30,8 @@ struct AdjustedP {
 /// than the number given.
 Result<AdjustedP> adjust(std::span<const double> p, Adjustment method, std::size_t family = 0);
 
-/// The paper's marks (Fig. 9 and 10): "***" for p < .001, "**" for p < .01, "*" for p < .05, else "".
+/// Marks of significance as in the ViP-Fluid paper (Fig. 9 and 10): "***" for p < .001, "**" for p < .01, "*"
+/// for p < .05, else "".
 const char* stars(double p);
 
 }  // namespace stats

@@ -1,5 +1,6 @@
 #pragma once
-/// The exact test of a proportion, with intervals and effect sizes, for the 2AFC answers of Task 2.
+/// The exact test of a proportion, with intervals and effect sizes, for the 2AFC answers of Task 2 (choices
+/// between two methods).
 
 #include <array>
 

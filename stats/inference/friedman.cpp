@@ -39,9 +39,9 @@ Result<Friedman> friedman_test(std::span<const double> rows, int k) {
 
   out.df1 = out.df;
   out.df2 = (n - 1) * out.df1;
-  // rest = n (k - 1) spread - 12 squares, with spread multiplied out: ties / (k - 1) may round, and then rest
-  // is not exactly 0 where all participants have the same order. Ranks are multiples of one half, so no term
-  // here rounds.
+  // rest = n (k - 1) spread - 12 squares, with spread = n k (k + 1) - ties / (k - 1) multiplied out: the
+  // quotient may round, and then rest would not be exactly 0 where all participants have the same order.
+  // Ranks are multiples of one half, so no term here rounds.
   const double rest = n * (n * conditions * (conditions * conditions - 1) - ties) - 12 * squares;
   out.iman_davenport_f = rest > 0 ? (n - 1) * 12 * squares / rest : std::numeric_limits<double>::infinity();
   out.iman_davenport_p = fisher_upper(out.iman_davenport_f, out.df1, out.df2);

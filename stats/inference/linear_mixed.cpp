@@ -25,7 +25,8 @@ constexpr double least_new = 1e-10;
 /// Largest accepted lambda, the ratio of a random effect's standard deviation to the residual's. Beyond it a
 /// participant's answers agree so closely that no residual is left.
 constexpr double largest_ratio = 1e3;
-/// A simpler model is preferred if its criterion is higher by less than this.
+/// A simpler model is preferred if its criterion (-2 times the restricted log-likelihood) is higher by less
+/// than this.
 constexpr double same_criterion = 1e-7;
 
 /// Which random effects the model has: [0] of the participant, [1] of the participant with each thing judged.
@@ -80,7 +81,8 @@ std::vector<Vector> independent_columns(std::span<const Predictor> terms, Linear
   return kept;
 }
 
-/// The lambdas of both random effects: taken from x for effects in the model, zero for the others.
+/// The lambdas of both random effects, their standard deviations divided by the residual's: taken from x for
+/// effects in the model, zero for the others.
 Lambda spread(std::span<const double> x, Effects effects) {
   Lambda out{};
   std::size_t next = 0;
@@ -90,8 +92,9 @@ Lambda spread(std::span<const double> x, Effects effects) {
   return out;
 }
 
-/// The criterion (-2 times the restricted log-likelihood) as a function of the model's lambdas, with the
-/// sigma that minimises it.
+/// The criterion (-2 times the restricted log-likelihood) as a function of the model's lambdas, the standard
+/// deviations of its random effects divided by the residual's, sigma. Sigma is the one that minimises the
+/// criterion.
 Objective profiled(const RestrictedLikelihood& likelihood, Effects effects) {
   return [&likelihood, effects](std::span<const double> x, std::span<double> gradient) {
     const auto at = likelihood.at(spread(x, effects));
@@ -111,8 +114,8 @@ struct Best {
   double value = std::numeric_limits<double>::infinity();
 };
 
-/// Finds the criterion's minimum and the simplest model that reaches it. That model omits an effect whose
-/// standard deviation is estimated as zero.
+/// Finds the minimum of the criterion (-2 times the restricted log-likelihood) and the simplest model that
+/// reaches it. That model omits an effect whose standard deviation is estimated as zero.
 Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated) {
   Best best;
   for (const Effects effects : {Effects{false, false}, {true, false}, {false, true}, {true, true}}) {
@@ -131,7 +134,9 @@ Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated)
   return best;
 }
 
-/// Covariance of the estimates of the model's lambdas and sigma: the inverse of half the criterion's Hessian.
+/// Covariance of the estimates of the model's lambdas (standard deviations of its random effects divided by
+/// the residual's) and of sigma (the residual's): the inverse of half the Hessian of the criterion, which is
+/// -2 times the restricted log-likelihood.
 std::optional<Vector> parameter_covariance(const RestrictedLikelihood& likelihood, const Best& best,
                                            const RestrictedLikelihood::At& at, double sigma) {
   std::vector<std::size_t> in;
@@ -179,8 +184,8 @@ double form(const Vector& matrix, std::span<const double> w) {
   return sum;
 }
 
-/// Fills the fit from the criterion's minimum `best`. Returns false if the criterion has no positive definite
-/// Hessian at the minimum.
+/// Fills the fit from `best`, the minimum of the criterion (-2 times the restricted log-likelihood). Returns
+/// false if the criterion's Hessian is not positive definite there.
 bool fill_fit(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
               LinearMixedFit& fit) {
   const auto at = *likelihood.at(best.lambda);

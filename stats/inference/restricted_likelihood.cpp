@@ -72,8 +72,10 @@ RestrictedLikelihood::RestrictedLikelihood(std::span<const Vector> columns, std:
   }
 }
 
-/// Adds one participant's terms to `sums`. With theta_k = lambda_k^2 and Z assigning rows to things, the
-/// participant's V is A + theta_0 1 1', where A = I + theta_1 Z Z'. Woodbury's identity inverts both.
+/// Adds one participant's terms to `sums`. theta_0 and theta_1 are the variances of the effects of the
+/// participant and of the participant with each thing, divided by the residual variance. With Z assigning
+/// rows to things, the covariance of the participant's rows divided by the residual variance is V = A +
+/// theta_0 1 1', where A = I + theta_1 Z Z'. Woodbury's identity inverts both.
 void RestrictedLikelihood::add_person(const std::vector<Group>& groups, std::array<double, 2> theta,
                                       Sums& sums) const {
   Vector all(q_ + 1);  // 1' A^-1 (X y)

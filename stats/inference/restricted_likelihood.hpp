@@ -45,8 +45,9 @@ class RestrictedLikelihood {
     double n = 0;
     std::vector<double> sums;
   };
-  /// Sums over people from which at() is computed. (X y) is the matrix of the columns and y. Z assigns the
-  /// rows to participants for index 0, and to participants with things for index 1.
+  /// Sums over people from which at() is computed. (X y) is the matrix of the columns and y, and V is the
+  /// covariance matrix of y divided by the residual variance. Z assigns the rows to participants for index 0,
+  /// and to participants with things for index 1.
   struct Sums {
     std::vector<double> gram;  ///< (X y)' V^-1 (X y)
     double log_det_v = 0;

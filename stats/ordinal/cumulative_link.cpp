@@ -50,7 +50,8 @@ CategoryTerm category_term(Link link, double lower, double upper, double locatio
     return t;
   }
   t.log_p = std::log(p);
-  // Derivatives of P with respect to v, divided by P (n1, n2, n3), then those of log P.
+  // Derivatives of P with respect to the location, divided by P (n1, n2, n3), then those of log P (d1, d2,
+  // d3).
   const double n1 = (c.f - a.f) / p, n2 = (a.f1 - c.f1) / p, n3 = (c.f2 - a.f2) / p;
   t.d1 = n1;
   t.d2 = n2 - n1 * n1;

@@ -70,8 +70,8 @@ MixedLikelihood::MixedLikelihood(std::span<const int> category, std::span<const 
   }
 }
 
-/// Moves group.mode to the maximum of the concave exponent by Newton's method. Returns false if the exponent
-/// is not finite.
+/// Moves group.mode to the maximum of g, the concave exponent of the integrand over the participant's effect,
+/// by Newton's method. Returns false if g or its slope d1 is not finite.
 bool MixedLikelihood::find_mode(Group& group, const Place& place) const {
   auto here = place.exponent(group.rows, group.mode);
   if (!std::isfinite(here.g)) {
@@ -112,8 +112,9 @@ double MixedLikelihood::add_group(Group& group, const Place& place, MixedGradien
   if (!std::isfinite(largest)) return -HUGE_VAL;
   for (double& s : share) sum += s = std::exp(s - largest);
   for (double& s : share) s /= sum;
-  // d log L = sum share d g(u_k) + by_slope d g'(mode) + by_curvature d g''(mode), since the mode moves by d
-  // g' / curvature and the scale changes with g''.
+  // With g the exponent of the integrand and u_k the nodes: d log L = sum share d g(u_k) + by_slope d
+  // g'(mode) + by_curvature d g''(mode), since the mode moves by d g' / curvature and the scale changes with
+  // g''.
   double a = 0, b = 1;
   for (std::size_t k = 0; k < points; ++k) {
     a += share[k] * at[k].d1;

@@ -14,9 +14,10 @@ struct MixedGradient {
   double sd = 0;
 };
 
-/// Adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995, section 2.4) about each participant's mode,
-/// scaled by the curvature at the mode; one node is Laplace's approximation. The gradient is that of the
-/// approximation, so it includes the movement of the nodes with the mode.
+/// Adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995, section 2.4) over each participant's effect,
+/// about the mode of the integrand and scaled by the curvature of its logarithm there; one node is Laplace's
+/// approximation. The gradient is that of the approximation, so it includes the movement of the nodes with
+/// the mode.
 class MixedLikelihood {
  public:
   /// category in [0, levels), participant in [0, participants) for each row; points >= 1.

@@ -158,8 +158,8 @@ void set_errors(BradleyTerry& out, const CoefficientErrors& errors) {
   set_pairs(out, errors, quantile);
 }
 
-/// Replaces errors of independent answers by errors over people; the errors of independent answers stay in
-/// the fields se_independent and se_sum0_independent.
+/// Replaces the standard errors that treat answers as independent by those that take each person's answers as
+/// one cluster; the former stay in the fields se_independent and se_sum0_independent.
 void set_people(BradleyTerry& out, const CoefficientErrors& errors, const LogitFit& fit) {
   const auto before = out.pairs;
   set_errors(out, errors);

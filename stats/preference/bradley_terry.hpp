@@ -59,8 +59,8 @@ struct BradleyTerry {
   std::vector<double> se_sum0_independent;     ///< standard errors of lambda_sum0 that treat answers as
                                                ///< independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
-  /// Degrees of freedom of errors over people (people_errors()). Empty if errors treat answers as
-  /// independent.
+  /// Degrees of freedom of standard errors over people, which take each person's answers as one cluster
+  /// (people_errors()). Empty if the standard errors treat answers as independent.
   std::optional<double> people_df;
   std::string why_independent;  ///< why a fit of single trials has the errors of independent answers; else
                                 ///< empty
@@ -89,9 +89,9 @@ Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);
 
-/// Fits single trials. Strengths and likelihood ratios are those of the trials' win counts. Errors, intervals
-/// and Wald tests are over people (people_errors()) if the data allow it. Bias-reduced strengths have the
-/// errors of independent answers.
+/// Fits single trials. Strengths and likelihood ratios are those of the trials' win counts. Standard errors,
+/// intervals and Wald tests take each person's answers as one cluster (people_errors()) if the data allow it.
+/// Those of bias-reduced strengths treat answers as independent.
 Result<BradleyTerry> bradley_terry(std::span<const Comparison> trials, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);

@@ -54,8 +54,9 @@ void check_trials(std::span<const Comparison> trials, int items);
 /// Counts of wins: items by items, row after row, as bradley_terry() takes them.
 std::vector<double> win_table(std::span<const Comparison> trials, int items);
 
-/// One row for each trial: the strengths of all items but the first, then `terms` columns of zeros for
-/// further terms.
+/// One row for each trial, a success if the first item was chosen. The design has a column for the strength
+/// of each item except item 0 (1 for the item in the first interval, -1 for the one in the second), then
+/// `terms` columns of zeros for the caller to fill.
 std::vector<LogitRow> trial_rows(std::span<const Comparison> trials, int items, std::size_t terms = 0);
 
 /// The covariance of estimated coefficients, and the distribution of an estimate over its standard error.

@@ -17,7 +17,8 @@ namespace {
 
 enum class Terms { None, Interval, IntervalAndDrift };
 
-/// Rows with the strengths of all items but the first, then the order terms.
+/// One row for each trial: columns for the strengths of all items but the first, then those of the order
+/// terms (bias towards the first interval, and its drift with the position).
 std::vector<LogitRow> rows_with(std::span<const Comparison> trials, int items, Terms terms, double centre) {
   const auto strengths = static_cast<std::size_t>(items - 1);
   auto rows = trial_rows(trials, items, static_cast<std::size_t>(terms));

@@ -53,7 +53,8 @@ Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>
   const double mm = jackknife_covariance(m, m), mq = jackknife_covariance(m, q),
                qq = jackknife_covariance(q, q);
   const double determinant = mm * qq - mq * mq, n = static_cast<double>(m.size());
-  // If the participants' estimates are equal, their variance is only rounding, and F would be meaningless.
+  // If the participants' estimates are equal, their variance is only rounding, and the test's F would be
+  // meaningless.
   const auto no_spread = [](double variance, double value) { return !(variance > 1e-18 * value * value); };
   if (no_spread(mm, fit.m) || no_spread(qq, fit.q) || !(determinant > 1e-12 * mm * qq))
     return Refusal{"the participants agree: m and q have no spread"};

@@ -12,7 +12,7 @@ namespace stats {
 
 namespace {
 
-/// Sums of products of the terms 1, x and d only.
+/// The sums of products of the first three terms alone: 1, x (log mu) and d (delta), both centred.
 template <std::size_t Terms>
 std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
   std::array<double, 9> gram{};
@@ -89,8 +89,8 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   return out;
 }
 
-/// Ordinary least squares on 1, x and d. Empty if the settings do not determine the plane or the score does
-/// not depend on x.
+/// Ordinary least squares of the score on 1, x = log mu and d = delta / delta_unit, both centred. Empty if
+/// the settings do not determine the plane or the score does not depend on x.
 std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
   const auto c = solve_positive<3>(plane_gram(sums), {sums.moment[0], sums.moment[1], sums.moment[2]});
   if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;

@@ -30,7 +30,7 @@ struct DirectFit {
   double level = 4;
   double k = 0;  ///< rise of the score with log mu on the curve at delta = 0
   double m = 0;  ///< change of k with delta, per frame/s
-  double q = 0;
+  double q = 0;  ///< coefficient of (log mu - log mu(delta))^2, mu(delta) being the curve
   double rss = 0;
   double n = 0;  ///< sum of the weights of the observations
 
@@ -73,8 +73,9 @@ class DirectModel {
   std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest value
 };
 
-/// Test of m = q = 0, which decides if the straight form may be used: Hotelling's T^2 of (m, q) with the
-/// jackknife's covariance over participants.
+/// Test of m = q = 0, the coefficients of DirectFit by which the slope of the score changes along and across
+/// the curve. It decides if the straight form, a plane in (log mu, delta), may be used: Hotelling's T^2 of
+/// (m, q) with the jackknife's covariance over participants.
 struct LackOfFit {
   double m = 0, q = 0;
   double f = 0;  ///< T^2 (n-2) / (2 (n-1)), F(2, n-2) under the null
@@ -82,7 +83,8 @@ struct LackOfFit {
   double p = 1;
 };
 
-/// The direct estimate with its uncertainty over participants and its tests.
+/// The direct estimate with its uncertainty over participants and its tests. A setting is a pair of nominal
+/// mean mu and standard deviation delta of the frame rate.
 struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are excluded, ascending
@@ -101,13 +103,14 @@ struct DirectEstimate {
   std::vector<double> in_reach_of(std::span<const double> deltas) const;
 };
 
-/// A curve is within reach at a delta if it lies at most this factor above the highest or below the lowest
-/// frame rate shown. Without the margin, chance would decide if a curve that passes through the outermost
-/// frame rate is within reach.
+/// A curve is within reach at a delta (standard deviation of the frame rate) if it lies at most this factor
+/// above the highest or below the lowest frame rate shown. Without the margin, chance would decide if a curve
+/// that passes through the outermost frame rate is within reach.
 inline constexpr double reach_margin = 1.15;
-/// Settings above this multiple of the curve are excluded. Near the top of the scale the scores level off,
-/// and a quadratic fitted to these scores misses the level. In simulated pilots with a = 18 frames/s and b =
-/// 0.01 s/frame the bias of a was -1.4 frames/s with and -0.5 without these settings (docs/statistics.md).
+/// Settings whose mean frame rate is above this multiple of the curve are excluded. Near the top of the scale
+/// the scores level off, and a quadratic fitted to these scores misses the level. In simulated pilots with a
+/// = 18 frames/s and b = 0.01 s/frame the bias of a was -1.4 frames/s with and -0.5 without these settings
+/// (docs/statistics.md).
 inline constexpr double far_factor = 2.46;
 
 /// The settings that within_reach() keeps, and what it excludes.

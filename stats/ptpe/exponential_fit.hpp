@@ -1,5 +1,6 @@
 #pragma once
-/// Least squares of y = a exp(b x), the form of the threshold curve mu = a exp(b delta) (paper Eq. 11).
+/// Least squares of y = a exp(b x), the form of the threshold curve (ViP-Fluid paper, Eq. 11: mu = a exp(b
+/// delta)).
 
 #include <array>
 #include <optional>

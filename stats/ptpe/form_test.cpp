@@ -23,8 +23,8 @@ namespace {
 constexpr std::size_t terms = 9;  // 1, x, e, x e, x^2, e^2, x e^2, e^3, e^4
 using Sums = TermSums<terms>;
 
-/// Parameters of the surface: u = x - alpha - beta e - gamma e^2, with x = log mu minus its mean. The score
-/// minus the level is u (k + m e + q u).
+/// Parameters of the surface: u = x - alpha - beta e - gamma e^2, with x = log mu minus its mean and e =
+/// (delta - middle) / half. The score minus the level is u (k + m e + q u).
 struct Place {
   static constexpr std::size_t terms = stats::terms, parameters = 6;
   double alpha = 0, beta = 0, gamma = 0, k = 0, m = 0, q = 0;
@@ -57,15 +57,16 @@ struct Place {
   bool rises() const { return k - std::abs(m) > 0; }  // on the curve, at all e in [-1, 1]
 };
 
-/// The sums of the terms over the ratings of each participant and of all, with the centres and units of x and
-/// e.
+/// The sums of the terms over the ratings of each participant and of all, with the constants of the variables
+/// x = log mu - centre and e = (delta - middle) / half.
 struct Ratings {
   std::vector<Sums> people;
   Sums all;
   double middle = 0, half = 1, centre = 0;  ///< middle and half range of delta; mean of log mu
 };
 
-/// The settings that determine the bend of the curve: see form_test().
+/// The settings not far below the curve (far_below_factor), at standard deviations at which the curve lies no
+/// higher than the highest frame rate shown.
 std::vector<PilotObservation> near_curve(std::span<const PilotObservation> observations, const Curve& curve) {
   std::map<double, double> highest;  // highest mean frame rate shown, by nominal delta
   for (const auto& o : observations) {

@@ -31,7 +31,8 @@ struct FreeCurve {
   BandPoint band(double delta) const;
 };
 
-/// The test of c = 0: jackknife over participants with Student's t.
+/// The test of c = 0, where c is the coefficient `bend` of FreeCurve: with c = 0 the threshold frame rate is
+/// an exponential of delta. Jackknife over participants with Student's t.
 struct FormTest {
   double c = 0, se = 0, t = 0;
   int df = 0;
@@ -53,12 +54,13 @@ inline constexpr double form_power = 0.80;
 /// true exponentials too often.
 inline constexpr double far_below_factor = 2.46;
 
-/// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u = log
-/// mu - log mu(delta) of the free curve. `observations` must be within reach (direct_fit.hpp); `curve` is the
-/// direct estimate. Excludes settings far below the curve, and standard deviations at which the curve lies
-/// above the frame rates shown. Refused: fewer than least_participants; fewer than three standard deviations
-/// left; settings that do not determine the surface; scores that do not rise with the frame rate along the
-/// curve, for all participants or without one of them; participants whose estimates are all equal.
+/// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2. Here u is log
+/// mu minus log mu(delta) of the free curve, e is delta scaled to -1 .. 1 as in FreeCurve, and k, m and q are
+/// coefficients. `observations` must be within reach (direct_fit.hpp); `curve` is the direct estimate.
+/// Excludes settings far below the curve, and standard deviations at which the curve lies above the frame
+/// rates shown. Refused: fewer than least_participants; fewer than three standard deviations left; settings
+/// that do not determine the surface; scores that do not rise with the frame rate along the curve, for all
+/// participants or without one of them; participants whose estimates are all equal.
 Result<FormTest> form_test(std::span<const PilotObservation> observations, const Curve& curve, double level,
                            double confidence);
 

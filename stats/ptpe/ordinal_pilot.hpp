@@ -22,7 +22,7 @@ namespace stats {
 struct OrdinalPilotFit {
   Curve curve;
   double level = 4;
-  double k = 0, m = 0, q = 0;  ///< coefficients of the location, on the probit scale
+  double k = 0, m = 0, q = 0;  ///< coefficients of the location k u + m u delta + q u^2, on the probit scale
   double sd_participant = 0;
   std::vector<double> levels, thresholds;
   double log_likelihood = 0;
@@ -39,7 +39,8 @@ Result<OrdinalPilotFit> fit_ordinal_pilot(std::span<const PilotRating> ratings, 
 struct OrdinalPilotEstimate {
   Result<OrdinalPilotFit> fit = Refusal{"not computed"};
   Result<CurveSpread> jackknife = Refusal{"not computed"};
-  std::vector<double> out_of_reach;  ///< nominal deltas excluded by the direct fit's rule
+  /// Nominal standard deviations of the frame rate that within_reach() excludes.
+  std::vector<double> out_of_reach;
 };
 
 /// The fit to the settings within reach (direct_fit.hpp) and its jackknife over participants, which takes one

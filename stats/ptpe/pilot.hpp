@@ -66,7 +66,7 @@ class PilotTable {
   std::size_t ratings_ = 0;
   bool all_equal_ = true;
   std::vector<double> mu_, delta_;
-  std::vector<Entry> entries_;  ///< participant x cell, cells row-major
+  std::vector<Entry> entries_;  ///< participant x cell; the cells are the nominal (mu, delta), row-major
 };
 
 /// The contour estimate: the contour of the mean scores is sampled along lines of constant delta one frame/s

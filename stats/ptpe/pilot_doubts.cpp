@@ -125,7 +125,7 @@ void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& peop
                    change, low, high, least < 1e-4 ? "<" : "=", std::max(least, 1e-4), fall_level)});
 }
 
-/// An estimator's intervals of a (index 0) and b (index 1).
+/// An estimator's intervals of a (index 0) and b (index 1) of the threshold curve a exp(b delta).
 struct Intervals {
   const char* name;
   std::array<std::array<double, 2>, 2> of;

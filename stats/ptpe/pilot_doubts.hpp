@@ -1,5 +1,6 @@
 #pragma once
-/// Reasons why a solver must not use a pilot's fit although the fit was computed.
+/// Reasons why a solver must not use the threshold curve mu = a exp(b delta) that was fitted to a pilot's
+/// ratings.
 
 #include <optional>
 #include <span>
@@ -24,7 +25,8 @@ inline constexpr double rise_level = 0.025;
 /// pairs of frame rates (Bonferroni). A pilot whose scores never fall raises this doubt in at most one of a
 /// hundred cases.
 inline constexpr double fall_level = 0.01;
-/// Smallest number of deltas at which the curve must run through the frame rates shown.
+/// Smallest number of deltas (standard deviations of the frame rate) at which the curve must run through the
+/// frame rates shown.
 inline constexpr int least_deltas_in_reach = 3;
 
 /// Returns these doubts, in this order and each at most once: the scores do not rise with the mean frame rate
@@ -42,14 +44,15 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
 inline constexpr const char* form_rejected = "form_rejected";
 std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
 
-/// The doubt "no_band" if the curve has no band; "curve_outside_band" if the direct curve, which the fluid
-/// solver reads, leaves the band at one of `deltas`. A file for the solver then cannot state where the curve
-/// is valid.
+/// `band`: the curve by scale_end_curve() with its confidence band. Returns the doubt "no_band" if there is
+/// no band; "curve_outside_band" if the direct curve, which the fluid solver reads, leaves the band at one of
+/// `deltas`. In both cases a file for the solver cannot state where the curve is valid. Empty without a
+/// doubt.
 std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
                                      std::span<const double> deltas);
 
-/// One sentence on the form test: c with its interval, how the curve differs, and the smallest detectable
-/// |c|.
+/// One sentence on the form test: the bend c with its interval, how the curve differs from an exponential,
+/// and the smallest detectable |c|.
 std::string form_text(const FormTest& form);
 
 }  // namespace stats

@@ -34,7 +34,8 @@ std::map<int, std::vector<const PilotRating*>> by_person(std::span<const PilotRa
   return out;
 }
 
-/// Least squares of the scores on log2 mu, with a separate mean for each standard deviation.
+/// Least squares of the scores on log2 mu, with a separate mean for each standard deviation of the frame
+/// rate.
 std::optional<PersonSlope> slope_of(const std::vector<const PilotRating*>& ratings) {
   struct Column {
     double n = 0, x = 0, y = 0;

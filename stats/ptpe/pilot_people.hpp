@@ -17,10 +17,11 @@ struct PilotRules {
   bool exclude_reverse_coders = false;
   bool model_drift = false;   ///< subtract the mean drift from the scores
   bool model_lapses = false;  ///< replace scores y by (y - rate lowest) / (1 - rate), so that lapses do not
-                              ///< shift means
+                              ///< shift means; rate and lowest are those of LapseCount
 };
 
-/// A participant's slope of the scores on log2 of the mean frame rate, within each standard deviation.
+/// A participant's slope of the scores on log2 of the mean frame rate, among settings with equal standard
+/// deviation of the frame rate.
 struct PersonSlope {
   int participant = 0;  ///< PilotRating::participant
   double slope = 0;     ///< points of the scale for each doubling of the frame rate
@@ -60,8 +61,8 @@ inline constexpr double lapse_tail = 0.005;   ///< below this probability the lo
 inline constexpr double lapse_level = 0.001;  ///< level of LapseCount::found()
 
 struct PilotPeople {
-  std::vector<PersonSlope> slopes;  ///< slopes of participants with at least three more ratings than standard
-                                    ///< deviations
+  std::vector<PersonSlope> slopes;  ///< slopes of participants with at least three more ratings than rated
+                                    ///< standard deviations of the frame rate
   Result<SessionDrift> drift = Refusal{"not computed"};
   Result<LapseCount> lapses = Refusal{"not computed"};
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Adaptive placement for the PTPE: each setting is chosen near the contour that the ratings so far suggest.
+/// Adaptive placement for the PTPE: each setting, a mean and a standard deviation of the frame rate, is
+/// chosen near the contour of just satisfactory settings that the ratings so far suggest.
 ///
 /// A rating says equally much about the contour wherever it lies on the scale, except near the scale's ends.
 /// So the settings of one person bracket the present estimate of the contour, above and below it in turn, at

@@ -13,7 +13,7 @@ namespace stats {
 enum class PlacementTruth {
   Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; all people have the
            ///< same a and b
-  Linear,  ///< the contour is a straight line with the same values at delta = 0 and 20 frames/s
+  Linear,  ///< the contour is a straight line that meets a exp(b delta) at delta = 0 and 20 frames/s
   Lapses,  ///< a tenth of the ratings are random scores
   Drift    ///< ratings fall steadily, by about one score over the session
 };

@@ -1,6 +1,6 @@
 #pragma once
 /// Mean scores over (mu, delta), the mean and the standard deviation of the frame rate, interpolated
-/// bilinearly between the settings, and their contours (paper section 4.2, Fig. 6).
+/// bilinearly between the settings, and their contours (ViP-Fluid paper, section 4.2, Fig. 6).
 
 #include <cstddef>
 #include <optional>

@@ -15,10 +15,11 @@ struct SolverInterval {
                                ///< the direct estimate's
 };
 
-/// The direct estimate has the smaller error, but its intervals reflect chance alone: where the scores are
-/// not quadratic, they covered the true b in as few as 84 % of simulated pilots. The contour assumes no shape
-/// of the scores and has the larger error. So the solver's intervals span the intervals of both estimates
-/// (measured: docs/statistics.md).
+/// `direct` holds a and b fitted directly to the ratings (direct_fit.hpp), `contour` the intervals of a and b
+/// fitted to a contour of the mean ratings (pilot.hpp). The direct estimate has the smaller error, but its
+/// intervals reflect chance alone: where the scores are not quadratic, they covered the true b in as few as
+/// 84 % of simulated pilots. The contour assumes no shape of the scores and has the larger error. So the
+/// solver's intervals span the intervals of both estimates (measured: docs/statistics.md).
 SolverInterval solver_interval(const CurveSpread& direct, const Result<PilotSpread>& contour);
 
 }  // namespace stats
