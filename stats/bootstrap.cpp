@@ -32,7 +32,7 @@ std::vector<double> resample_weights(int n, std::uint64_t seed, std::uint64_t re
 }
 
 double expanded_tail(int n, double confidence) {
-  if (n < 2) throw std::invalid_argument("resampling needs at least two units");
+  if (n < 2) throw std::invalid_argument("expanded_tail: fewer than two units; resample at least two");
   const double t = student_quantile(0.5 + confidence / 2, n - 1);
   return normal_probability(-std::sqrt(n / (n - 1.0)) * t);
 }
@@ -46,7 +46,8 @@ std::array<double, 2> expanded_percentile_interval(std::span<const double> estim
 }
 
 double bootstrap_se(std::span<const double> estimates) {
-  if (estimates.size() < 2) throw std::invalid_argument("a standard error of fewer than two estimates");
+  if (estimates.size() < 2)
+    throw std::invalid_argument("bootstrap_se: fewer than two estimates; compute at least two resamples");
   const double n = static_cast<double>(estimates.size());
   double mean = 0, squares = 0;
   for (const double x : estimates) mean += x / n;

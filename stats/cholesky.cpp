@@ -7,7 +7,8 @@ namespace stats {
 
 std::optional<Cholesky> Cholesky::of(std::span<const double> matrix, double least_pivot) {
   const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
-  if (n * n != matrix.size()) throw std::invalid_argument("a matrix that is not square");
+  if (n * n != matrix.size())
+    throw std::invalid_argument("Cholesky::of: the matrix is not square; give n x n elements");
   Cholesky out;
   out.n_ = n;
   out.lower_.assign(matrix.begin(), matrix.end());
@@ -29,7 +30,9 @@ std::optional<Cholesky> Cholesky::of(std::span<const double> matrix, double leas
 }
 
 std::vector<double> Cholesky::solve(std::span<const double> b) const {
-  if (b.size() != n_) throw std::invalid_argument("a right-hand side of another length");
+  if (b.size() != n_)
+    throw std::invalid_argument(
+        "Cholesky::solve: b does not fit the matrix; give one element for each of its rows");
   std::vector<double> x(b.begin(), b.end());
   for (std::size_t row = 0; row < n_; ++row) {
     for (std::size_t k = 0; k < row; ++k) x[row] -= lower_[row * n_ + k] * x[k];

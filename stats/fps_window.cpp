@@ -9,7 +9,8 @@ namespace stats {
 namespace {
 void check(double interval_s) {
   if (!(interval_s > 0) || !std::isfinite(interval_s)) {
-    throw std::invalid_argument("frame interval must be positive and finite");
+    throw std::invalid_argument(
+        "frame rate: a frame interval is not positive and finite; give seconds above 0");
   }
 }
 }  // namespace
@@ -39,7 +40,8 @@ FpsMoments fps_moments(std::span<const double> intervals_s) {
 }
 
 FpsWindow::FpsWindow(std::size_t capacity) : capacity_(capacity) {
-  if (capacity == 0) throw std::invalid_argument("FPS window needs room for one frame");
+  if (capacity == 0)
+    throw std::invalid_argument("FpsWindow: the capacity is 0; give room for at least one frame");
 }
 
 void FpsWindow::push(double interval_s) {

@@ -12,9 +12,10 @@ namespace stats {
 
 MeanInterval mean_interval(std::span<const double> values, double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument(
+        "mean_interval: the confidence is not between 0 and 1; give one such as 0.95");
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
-    throw std::invalid_argument("a mean of values that are not finite");
+    throw std::invalid_argument("mean_interval: a value is not finite; leave such values out");
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   MeanInterval out{unknown, unknown, unknown, values.size()};
   if (values.empty()) return out;
@@ -32,7 +33,9 @@ MeanInterval mean_interval(std::span<const double> values, double confidence) {
 
 std::vector<double> group_means(std::span<const double> values, std::size_t size) {
   if (size == 0 || values.size() % size != 0)
-    throw std::invalid_argument("values must fill whole groups of at least one");
+    throw std::invalid_argument(
+        "group_means: the values do not fill whole groups; give a multiple of `size` values, `size` at least "
+        "1");
   std::vector<double> out;
   for (std::size_t first = 0; first < values.size(); first += size) {
     double sum = 0;
@@ -49,7 +52,8 @@ std::vector<double> group_means(std::span<const double> values, std::size_t size
 
 std::vector<double> paired_group_means(std::span<const double> a, std::span<const double> b,
                                        std::size_t size) {
-  if (a.size() != b.size()) throw std::invalid_argument("paired values must have the same length");
+  if (a.size() != b.size())
+    throw std::invalid_argument("paired_group_means: a and b differ in length; give one b for each a");
   std::vector<double> differences;
   for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
   return group_means(differences, size);

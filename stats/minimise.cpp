@@ -36,7 +36,9 @@ class Descent {
     at_.x = std::move(start);
     at_.gradient.resize(n_);
     at_.value = f_(at_.x, at_.gradient);
-    if (!std::isfinite(at_.value)) throw std::invalid_argument("the start lies outside the domain");
+    if (!std::isfinite(at_.value))
+      throw std::invalid_argument(
+          "minimise: the objective is not finite at `start`; start within its domain");
   }
 
   /// Takes BFGS steps from the approximation `inverse` of the inverse Hessian (empty: a scaled identity)
@@ -162,7 +164,8 @@ Minimum minimise(const Objective& objective, std::vector<double> start) {
 Minimum minimise_near(const Objective& objective, std::vector<double> start,
                       std::vector<double> inverse_hessian) {
   if (inverse_hessian.size() != start.size() * start.size())
-    throw std::invalid_argument("an inverse Hessian of another size");
+    throw std::invalid_argument(
+        "minimise_near: `inverse_hessian` does not fit `start`; give n x n elements for n variables");
   Descent descent(objective, std::move(start));
   const bool converged = descent.bfgs(std::move(inverse_hessian), 1e-10);
   return {descent.at().x, descent.at().value, {}, converged};

@@ -12,14 +12,16 @@ namespace stats {
 
 namespace {
 void require_open_unit(double p) {
-  if (!(p > 0 && p < 1)) throw std::invalid_argument("a probability must lie between 0 and 1");
+  if (!(p > 0 && p < 1))
+    throw std::invalid_argument(
+        "student_quantile or normal_quantile: p is not between 0 and 1; give a probability in (0, 1)");
 }
 }  // namespace
 
 double student_quantile(double p, double df) {
   use_gsl_codes();
   require_open_unit(p);
-  if (!(df > 0)) throw std::invalid_argument("degrees of freedom must be positive");
+  if (!(df > 0)) throw std::invalid_argument("student_quantile: df is not above 0; give a larger number");
   return gsl_cdf_tdist_Pinv(p, df);
 }
 
@@ -35,8 +37,10 @@ double normal_probability(double z) {
 }
 
 double sorted_quantile(std::span<const double> ascending, double p) {
-  if (ascending.empty()) throw std::invalid_argument("a quantile of no values");
-  if (!(p >= 0 && p <= 1)) throw std::invalid_argument("a probability must lie between 0 and 1");
+  if (ascending.empty())
+    throw std::invalid_argument("sorted_quantile: there are no values; give at least one");
+  if (!(p >= 0 && p <= 1))
+    throw std::invalid_argument("sorted_quantile: p is not within [0, 1]; give a probability");
   const double at = p * static_cast<double>(ascending.size() - 1);
   const auto low = static_cast<std::size_t>(at);
   const auto high = std::min(low + 1, ascending.size() - 1);

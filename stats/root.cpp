@@ -19,7 +19,9 @@ double find_root(const std::function<double(double)>& f, double low, double high
   if (at_low == 0) return low;
   if (at_high == 0) return high;
   if (!std::isfinite(at_low) || !std::isfinite(at_high) || (at_low > 0) == (at_high > 0))
-    throw std::invalid_argument("find_root: the function does not change sign between the ends");
+    throw std::invalid_argument(
+        "find_root: the function is not finite or has the same sign at both ends; give ends between which it "
+        "changes sign");
 
   gsl_function wrapped;
   wrapped.function = [](double x, void* user) {

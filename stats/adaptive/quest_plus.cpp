@@ -28,7 +28,9 @@ QuestPlus::QuestPlus(int stimuli, int outcomes, std::span<const double> prior,
   const double sum = std::accumulate(prior.begin(), prior.end(), 0.0);
   const bool valid = std::ranges::all_of(prior, [](double w) { return w >= 0; });
   if (stimuli < 1 || outcomes < 1 || !valid || !(sum > 0 && std::isfinite(sum)))
-    throw std::invalid_argument("QUEST+ needs stimuli, outcomes and a prior of positive weight");
+    throw std::invalid_argument(
+        "QuestPlus: no stimulus, no outcome or no usable prior; give at least one of each, and weights of 0 "
+        "or more with a finite sum above 0");
   for (double& w : posterior_) w /= sum;
   interest_.assign(interest.begin(), interest.end());
   if (interest_.empty()) {
@@ -36,7 +38,8 @@ QuestPlus::QuestPlus(int stimuli, int outcomes, std::span<const double> prior,
     std::iota(interest_.begin(), interest_.end(), 0);
   }
   if (interest_.size() != posterior_.size() || std::ranges::min(interest_) < 0)
-    throw std::invalid_argument("QUEST+ needs one marginal cell for each parameter point");
+    throw std::invalid_argument(
+        "QuestPlus: `interest` does not fit `prior`; give one index of 0 or more for each weight, or none");
   cells_ = std::ranges::max(interest_) + 1;
   likelihood_.reserve(static_cast<std::size_t>(stimuli) * static_cast<std::size_t>(outcomes) *
                       posterior_.size());
@@ -44,7 +47,9 @@ QuestPlus::QuestPlus(int stimuli, int outcomes, std::span<const double> prior,
     for (int o = 0; o < outcomes; ++o)
       for (int p = 0; p < static_cast<int>(posterior_.size()); ++p) {
         const double chance = likelihood(s, p, o);
-        if (!(chance >= 0 && chance <= 1)) throw std::invalid_argument("a probability is not within [0, 1]");
+        if (!(chance >= 0 && chance <= 1))
+          throw std::invalid_argument(
+              "QuestPlus: `likelihood` returned a value outside [0, 1]; let it return a probability");
         likelihood_.push_back(chance);
       }
 }
@@ -82,7 +87,9 @@ int QuestPlus::next(std::span<const int> allowed) const {
 
 void QuestPlus::update(int stimulus, int outcome) {
   if (stimulus < 0 || stimulus >= stimuli_ || outcome < 0 || outcome >= outcomes_)
-    throw std::invalid_argument("the stimulus or the outcome is not in the grid");
+    throw std::invalid_argument(
+        "QuestPlus::update: the stimulus or the outcome is not in the grid; give indices from 0 to below the "
+        "numbers given to the constructor");
   double sum = 0;
   for (std::size_t p = 0; p < posterior_.size(); ++p) sum += posterior_[p] * chance(stimulus, outcome, p);
   if (!(sum > 0)) return;
@@ -103,7 +110,8 @@ double QuestPlus::entropy() const {
 GridEstimate grid_estimate(std::span<const double> values, std::span<const double> weights,
                            double confidence) {
   if (values.empty() || values.size() != weights.size())
-    throw std::invalid_argument("a grid needs one weight for each value");
+    throw std::invalid_argument(
+        "grid_estimate: no value, or not one weight for each value; give lists of one length above 0");
   std::map<double, double> mass;
   for (std::size_t i = 0; i < values.size(); ++i) mass[values[i]] += weights[i];
   std::vector<double> x, w;

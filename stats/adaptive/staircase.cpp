@@ -11,7 +11,9 @@ void require_valid(const StaircaseRules& r) {
   const bool steps = !r.steps.empty() && std::ranges::all_of(r.steps, [](double s) { return s > 0; });
   if (!(r.lowest <= r.start && r.start <= r.highest) || !steps || r.down_after < 1 || r.up_after < 1 ||
       !(r.up_ratio > 0) || r.trials < 0 || r.reversals < 0 || (r.decibels && !(r.lowest > 0)))
-    throw std::invalid_argument("the rules of the staircase are out of range");
+    throw std::invalid_argument(
+        "replay_staircase: a rule is out of range; set lowest <= start <= highest (lowest above 0 with "
+        "decibels), steps and up_ratio above 0, down_after and up_after from 1, trials and reversals from 0");
 }
 
 }  // namespace

@@ -38,12 +38,18 @@ bool is_t_test(TestKind kind) {
 
 void check_margin(const DeclaredTest& test) {
   if (test.kind == TestKind::Tost && (!test.margin || test.alternative != Alternative::TwoSided))
-    throw std::invalid_argument("an equivalence test needs a margin and no side");
+    throw std::invalid_argument(
+        "run_declared: an equivalence test without a margin or with a side; set DeclaredTest::margin and "
+        "Alternative::TwoSided");
   if (!test.margin) return;
-  if (!(*test.margin > 0)) throw std::invalid_argument("the margin must be above 0");
+  if (!(*test.margin > 0))
+    throw std::invalid_argument(
+        "run_declared: the margin is not above 0; set DeclaredTest::margin to a positive number");
   if (test.kind == TestKind::Tost) return;
   if (!is_t_test(test.kind) || test.alternative == Alternative::TwoSided)
-    throw std::invalid_argument("only equivalence and one-sided t tests have a margin");
+    throw std::invalid_argument(
+        "run_declared: only equivalence and one-sided t tests have a margin; leave DeclaredTest::margin "
+        "empty");
 }
 
 std::vector<double> values_of_means(std::span<const ExactMean> means) {
@@ -271,7 +277,7 @@ const std::vector<std::string>& test_words() {
 TestKind test_of(const std::string& word) {
   const auto& words = test_words();
   const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end()) throw std::invalid_argument("no test: " + word);
+  if (found == words.end()) throw std::invalid_argument("test_of: use a word of test_words(), not " + word);
   return static_cast<TestKind>(found - words.begin());
 }
 
@@ -287,7 +293,8 @@ const char* alternative_word(Alternative alternative) {
 
 Alternative alternative_of(const std::string& word) {
   const auto* const found = std::find(alternative_names.begin(), alternative_names.end(), word);
-  if (found == alternative_names.end()) throw std::invalid_argument("no alternative: " + word);
+  if (found == alternative_names.end())
+    throw std::invalid_argument("alternative_of: use two-sided, less or greater, not " + word);
   return static_cast<Alternative>(found - alternative_names.begin());
 }
 
@@ -310,14 +317,16 @@ Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const Exact
     case TestKind::CumulativeLinkMixed:
       break;
   }
-  throw std::invalid_argument("a mixed model takes single answers");
+  throw std::invalid_argument("run_declared: a mixed model takes single answers; give AnswerRows");
 }
 
 Result<TestOutcome> run_declared(const DeclaredTest& test, const AnswerRows& rows) {
   check_margin(test);
   if (test.kind == TestKind::LinearMixed) return run_linear_mixed(test, rows);
   if (test.kind == TestKind::CumulativeLinkMixed) return run_link_mixed(test, rows);
-  throw std::invalid_argument("the test takes one value of each participant");
+  throw std::invalid_argument(
+      "run_declared: this test takes one value of each participant, not single answers; give lists of "
+      "ExactMean");
 }
 
 }  // namespace stats

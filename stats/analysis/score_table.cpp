@@ -33,7 +33,9 @@ ScoreTable::ScoreTable(ScoreScale scale, std::span<const MethodScore> scores, in
   for (const MethodScore& score : scores) {
     if (!inside(score.participant, static_cast<std::size_t>(participants_)) || std::isinf(score.sum) ||
         score.items != scores.front().items)
-      throw std::invalid_argument("a score of no participant of the table, of other items, or infinite");
+      throw std::invalid_argument(
+          "ScoreTable: a score has a participant outside the table, another number of items than the first "
+          "or an infinite sum; leave it out or mend it");
     const std::size_t at = first_of(score.n_star, score.method) + static_cast<std::size_t>(score.participant);
     planned_[at] = 1;
     if (std::isnan(score.sum)) continue;
@@ -50,7 +52,8 @@ ScoreTable::ScoreTable(ScoreScale scale, std::span<const MethodScore> scores, in
 
 std::size_t ScoreTable::first_of(int n_star, int method) const {
   if (!inside(n_star, n_stars_.size()) || !inside(method, methods_.size()))
-    throw std::invalid_argument("no such n_* or method in the table");
+    throw std::invalid_argument(
+        "ScoreTable: no such n_* or method; give indices below the sizes of n_stars() and methods()");
   const auto column = static_cast<std::size_t>(n_star) * methods_.size() + static_cast<std::size_t>(method);
   return column * static_cast<std::size_t>(participants_);
 }

@@ -20,7 +20,8 @@ constexpr int total_weight = 374;
 void check(const SsqAnswers& answers) {
   for (const std::optional<int>& answer : answers) {
     if (answer && (*answer < 0 || *answer > ssq_item_max))
-      throw std::invalid_argument("an SSQ answer lies outside 0 to 3");
+      throw std::invalid_argument(
+          "ssq_sum: an answer lies outside 0 to 3; give 0 (none) to 3 (severe), or leave it empty");
   }
 }
 

@@ -22,7 +22,7 @@ void sync(const fs::path& path, int flags) {
   ::close(fd);
   if (reason == EIO || reason == ENOSPC || reason == EDQUOT)
     throw Error(path.string(), std::string("cannot be written to the disk: ") + std::strerror(reason),
-                "check the disk, and run the command again");
+                "free space or check the disk, and run the command again");
 }
 
 void sync_folder(const fs::path& folder) { sync(folder, O_DIRECTORY); }

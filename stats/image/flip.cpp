@@ -195,7 +195,8 @@ double colour_error(double distance) {
 ImageScore flip(const ImageView& a, const ImageView& b, double pixels_per_degree, MaskView mask) {
   check_images(a, b, mask);
   if (!(pixels_per_degree > 0 && pixels_per_degree <= most_pixels_per_degree))
-    throw std::invalid_argument("pixels a degree must be positive and at most 200");
+    throw std::invalid_argument(
+        "flip: pixels_per_degree is out of range; give a value above 0 and at most 200");
   const SeenPicture first = seen(a, pixels_per_degree), second = seen(b, pixels_per_degree);
   double sum = 0;
   std::size_t pixels = 0;

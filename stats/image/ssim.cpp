@@ -103,7 +103,8 @@ void fill_band(const std::vector<double>& x, const std::vector<double>& y, int f
 SsimMap ssim_map(const ImageView& a, const ImageView& b) {
   check_images(a, b, {});
   if (a.width < window || a.height < window)
-    throw std::invalid_argument("pictures must be at least 11 x 11 px for SSIM");
+    throw std::invalid_argument(
+        "ssim_map: the pictures are smaller than the window; give pictures of at least 11 x 11 px");
   const auto x = luma(a);
   const auto y = luma(b);
   const auto weights = gaussian();
@@ -121,7 +122,8 @@ SsimMap ssim_map(const ImageView& a, const ImageView& b) {
 ImageScore SsimMap::mean(MaskView mask) const {
   const auto full_width = static_cast<std::size_t>(width + 2 * border);
   if (!mask.empty() && mask.size() != full_width * static_cast<std::size_t>(height + 2 * border))
-    throw std::invalid_argument("a mask must have the picture's size");
+    throw std::invalid_argument(
+        "SsimMap::mean: the mask does not fit the pictures; give one byte for each of their pixels, or none");
   ImageScore out;
   double sum = 0;
   for (std::size_t i = 0; i < index.size(); ++i) {

@@ -46,7 +46,7 @@ Values adjusted_in_order(const Values& sorted, Adjustment method) {
     case Adjustment::BenjaminiHochberg:
       return step_up(scaled(sorted, [n](double i) { return n / i; }));
   }
-  throw std::invalid_argument("an unknown adjustment");
+  throw std::invalid_argument("adjust: the method is unknown; give one of Adjustment");
 }
 
 }  // namespace

@@ -121,7 +121,8 @@ std::string why_not(double k, double n, double p0) {
 Result<BinomialTest> binomial_test(double k, double n, double p0, Alternative alternative,
                                    double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument(
+        "binomial_test: the confidence is not between 0 and 1; give one such as 0.95");
   if (const std::string reason = why_not(k, n, p0); !reason.empty()) return Refusal{reason};
 
   BinomialTest out{.k = k, .n = n, .p0 = p0, .alternative = alternative, .confidence = confidence};

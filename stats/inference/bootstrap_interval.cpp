@@ -20,7 +20,8 @@ using Interval = std::array<double, 2>;
 
 void require_confidence(double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument(
+        "bootstrap_interval: the confidence is not between 0 and 1; give one such as 0.95");
 }
 
 double mean_of(std::span<const double> values) {
@@ -167,7 +168,9 @@ Result<BootstrapInterval> summarise(const Resampled& sample, Values estimates, d
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              const BootstrapOptions& options) {
   require_confidence(options.confidence);
-  if (options.resamples < 2) throw std::invalid_argument("a bootstrap needs at least two resamples");
+  if (options.resamples < 2)
+    throw std::invalid_argument(
+        "bootstrap_interval: fewer than two resamples; set BootstrapOptions::resamples to 2 or more");
   const auto sample = prepare(x, statistic, options.confidence);
   if (!sample) return Refusal{sample.reason()};
   const auto n = static_cast<int>(sample->x.size());
@@ -188,16 +191,22 @@ Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const St
   require_confidence(confidence);
   const auto sample = prepare(x, statistic, confidence);
   if (!sample) return Refusal{sample.reason()};
-  if (sample->n_missing > 0) throw std::invalid_argument("indices into values of which some are missing");
+  if (sample->n_missing > 0)
+    throw std::invalid_argument(
+        "bootstrap_interval: x has missing values (NaN) although indices are given; remove these values "
+        "first");
   const std::size_t n = x.size();
   if (indices.size() < 2 * n || indices.size() % n != 0)
-    throw std::invalid_argument("indices must fill at least two whole resamples");
+    throw std::invalid_argument(
+        "bootstrap_interval: the indices do not fill two or more whole resamples; give x.size() indices for "
+        "each");
   Values estimates, drawn(n);
   for (std::size_t first = 0; first < indices.size(); first += n) {
     for (std::size_t i = 0; i < n; ++i) {
       const int index = indices[first + i];
       if (index < 0 || static_cast<std::size_t>(index) >= n)
-        throw std::invalid_argument("an index outside the sample");
+        throw std::invalid_argument(
+            "bootstrap_interval: an index lies outside x; give indices from 0 to x.size() - 1");
       drawn[i] = x[static_cast<std::size_t>(index)];
     }
     estimates.push_back(statistic(drawn));

@@ -89,7 +89,8 @@ Result<Description> describe(std::span<const double> values) {
 }
 
 Result<double> quantile(std::span<const double> values, double p, QuantileType type) {
-  if (!(p >= 0 && p <= 1)) throw std::invalid_argument("a probability must lie between 0 and 1");
+  if (!(p >= 0 && p <= 1))
+    throw std::invalid_argument("quantile: p is not within [0, 1]; give a probability");
   const auto sample = some(values);
   if (!sample) return Refusal{sample.reason()};
   const int exponent = common_exponent(sample->values);

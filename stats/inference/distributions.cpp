@@ -24,7 +24,9 @@ void require(bool ok, const char* message) {
   if (!ok) throw std::invalid_argument(message);
 }
 
-void require_df(double df) { require(df > 0, "degrees of freedom must be positive"); }
+void require_df(double df) {
+  require(df > 0, "Student's t or Fisher's F: the degrees of freedom are not above 0; give a larger number");
+}
 
 /// log P(Z <= x) of the standard normal Z, for any x.
 double log_normal_lower(double x) { return gsl_sf_log_erfc(-x / std::numbers::sqrt2) - std::numbers::ln2; }
@@ -131,7 +133,7 @@ double student_tail(double t, double df) {
 double student_upper(double t, double df) {
   use_gsl_codes();
   require_df(df);
-  require(!std::isnan(t), "t is not a number");
+  require(!std::isnan(t), "student_upper: t is NaN; give a number");
   const double tail = student_tail(t, df);
   return t > 0 ? tail : 1 - tail;
 }
@@ -162,7 +164,7 @@ double solve_upper_quantile(double p, double df) {
 double student_upper_quantile(double p, double df) {
   use_gsl_codes();
   require_df(df);
-  require(p > 0 && p < 1, "a probability must lie between 0 and 1");
+  require(p > 0 && p < 1, "student_upper_quantile: p is not between 0 and 1; give a probability in (0, 1)");
   if (p > 0.5) return -student_upper_quantile(1 - p, df);
   if (p == 0.5) return 0;
   // A cache of four quantiles: tables of tests with equal numbers of people need the same ones again.
@@ -182,7 +184,8 @@ double student_upper_quantile(double p, double df) {
 double noncentral_t_lower(double t, double df, double ncp) {
   use_gsl_codes();
   require_df(df);
-  require(!std::isnan(t) && std::isfinite(ncp), "t is not a number or the noncentrality is not finite");
+  require(!std::isnan(t) && std::isfinite(ncp),
+          "noncentral_t_lower: t is NaN or ncp is not finite; give numbers");
   if (std::isinf(t)) return t > 0 ? 1 : 0;
   constexpr double large = 60;
   if (ncp > large) return large_ncp_lower(t, df, ncp);
@@ -195,8 +198,9 @@ double noncentral_t_upper(double t, double df, double ncp) { return noncentral_t
 std::array<double, 2> noncentrality_interval(double t, double df, double confidence) {
   use_gsl_codes();
   require_df(df);
-  require(std::isfinite(t), "t is not finite");
-  require(confidence > 0 && confidence < 1, "a confidence must lie between 0 and 1");
+  require(std::isfinite(t), "noncentrality_interval: t is not finite; give a finite number");
+  require(confidence > 0 && confidence < 1,
+          "noncentrality_interval: the confidence is not between 0 and 1; give one such as 0.95");
   const double tail = (1 - confidence) / 2;
   // P(T >= t) rises from 0 to 1 with the noncentrality.
   const auto bound = [&](auto probability, double direction) {
@@ -218,7 +222,7 @@ std::array<double, 2> noncentrality_interval(double t, double df, double confide
 
 double hedges_factor(double df) {
   use_gsl_codes();
-  require(df > 1, "Hedges' factor needs more than one degree of freedom");
+  require(df > 1, "hedges_factor: df is not above 1; use a larger sample");
   // G(x) / (sqrt(x) G(x - 1/2)), with the Stirling terms of both gamma functions cancelled analytically.
   const double x = df / 2, below = x - 0.5;
   return std::exp((x - 1) * std::log1p(0.5 / below) - 0.5) * gsl_sf_gammastar(x) / gsl_sf_gammastar(below);
@@ -228,7 +232,7 @@ double fisher_upper(double x, double df1, double df2) {
   use_gsl_codes();
   require_df(df1);
   require_df(df2);
-  require(x >= 0, "F must not be negative");
+  require(x >= 0, "fisher_upper: x is below 0; give an F of 0 or more");
   if (std::isinf(x)) return 0;
   const double ratio = df1 * x / df2;
   if (ratio < 1) return gsl_cdf_beta_Q(ratio / (1 + ratio), df1 / 2, df2 / 2);
@@ -313,8 +317,9 @@ double log_beta_lower(double a, double b, double x, double y) {
 
 double beta_quantile(double probability, double a, double b) {
   if (!(probability > 0 && probability < 1))
-    throw std::invalid_argument("a probability must lie between 0 and 1");
-  if (!(a >= 0.5 && b >= 0.5)) throw std::invalid_argument("beta_quantile: a and b must be at least 0.5");
+    throw std::invalid_argument("beta_quantile: the probability is not between 0 and 1; give one in (0, 1)");
+  if (!(a >= 0.5 && b >= 0.5))
+    throw std::invalid_argument("beta_quantile: a or b is below 0.5; give larger ones");
   const auto part = [](double logit) { return 1 / (1 + std::exp(-logit)); };
   const auto miss = [&](double logit) {
     const double x = part(logit), y = part(-logit);

@@ -12,13 +12,16 @@ namespace stats {
 namespace {
 
 TTestOptions options(double alpha) {
-  if (!(alpha > 0 && alpha < 0.5)) throw std::invalid_argument("alpha must lie between 0 and 1/2");
+  if (!(alpha > 0 && alpha < 0.5))
+    throw std::invalid_argument("equivalence_paired: alpha is not between 0 and 1/2; give one such as 0.05");
   return {.confidence = 1 - 2 * alpha, .effect_intervals = false};
 }
 
 void require_order(const Margins& margins) {
   if (!std::isfinite(margins.low) || !std::isfinite(margins.high) || !(margins.low < margins.high))
-    throw std::invalid_argument("the low margin must lie below the high one");
+    throw std::invalid_argument(
+        "equivalence_paired: the margins are not finite or in the wrong order; give finite ones with low < "
+        "high");
 }
 
 /// Both one-sided tests, from the t test against a difference of zero.

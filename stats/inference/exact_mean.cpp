@@ -17,7 +17,9 @@ bool has_both(const ExactMean& x, const ExactMean& y) { return !std::isnan(x.sum
 double largest_mean(std::span<const ExactMean> x, std::span<const ExactMean> y) {
   double largest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (x[i].count < 1 || y[i].count < 1) throw std::invalid_argument("a mean of no values");
+    if (x[i].count < 1 || y[i].count < 1)
+      throw std::invalid_argument(
+          "exact_differences: a mean has a count below 1; give the number of values in its sum");
     if (has_both(x[i], y[i])) largest = std::max({largest, std::abs(x[i].value()), std::abs(y[i].value())});
   }
   return largest;
@@ -32,7 +34,8 @@ std::vector<double> ExactDifferences::values() const {
 }
 
 Result<ExactDifferences> exact_differences(std::span<const ExactMean> x, std::span<const ExactMean> y) {
-  if (x.size() != y.size()) throw std::invalid_argument("paired values must have the same length");
+  if (x.size() != y.size())
+    throw std::invalid_argument("exact_differences: x and y differ in length; give one y for each x");
   const auto largest = largest_mean(x, y);
   if (std::isinf(largest)) return Refusal{"a value is infinite"};
   ExactDifferences out;

@@ -108,7 +108,9 @@ struct Rows {
 
 Result<Rows> complete(const std::vector<std::vector<double>>& columns, std::span<const double> y) {
   for (const auto& column : columns) {
-    if (column.size() != y.size()) throw std::invalid_argument("columns and y differ in length");
+    if (column.size() != y.size())
+      throw std::invalid_argument(
+          "fit_linear: a column and y differ in length; give one value for each row in every column");
   }
   Rows out;
   out.columns.resize(columns.size());

@@ -218,11 +218,14 @@ int LinearMixedFit::index_of(const std::string& term) const {
 }
 
 MixedContrast LinearMixedFit::contrast(std::span<const double> weights, double confidence) const {
-  if (weights.size() != beta.size()) throw std::invalid_argument("one weight for each term");
+  if (weights.size() != beta.size())
+    throw std::invalid_argument(
+        "LinearMixedFit::contrast: not one weight for each term; give as many as `terms` has names");
   MixedContrast out;
   for (std::size_t i = 0; i < beta.size(); ++i) out.estimate += weights[i] * beta[i];
   const double variance = form(covariance, weights);
-  if (!(variance > 0)) throw std::invalid_argument("weights that are all zero");
+  if (!(variance > 0))
+    throw std::invalid_argument("LinearMixedFit::contrast: all weights are 0; give at least one other");
   out.se = std::sqrt(variance);
   Vector slopes;
   for (const Vector& matrix : covariance_slopes) slopes.push_back(form(matrix, weights));
@@ -238,7 +241,8 @@ Result<LinearMixedFit> fit_linear_mixed(std::span<const double> y, std::span<con
                                         std::span<const int> participant, std::span<const int> thing) {
   if (participant.size() != y.size() || thing.size() != y.size() ||
       std::any_of(terms.begin(), terms.end(), [&](const auto& one) { return one.values.size() != y.size(); }))
-    throw std::invalid_argument("columns that differ in length");
+    throw std::invalid_argument(
+        "fit_linear_mixed: the columns differ in length; give every column one value for each answer");
   if (const auto reason = refusal_of(y, participant); !reason.empty()) return Refusal{reason};
   LinearMixedFit fit;
   const auto columns = independent_columns(terms, fit);

@@ -30,7 +30,8 @@ double sample_variance(std::span<const double> values) {
 
 Result<CronbachAlpha> cronbach_alpha(std::span<const double> rows, int items, double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument(
+        "cronbach_alpha: the confidence is not between 0 and 1; give one such as 0.95");
   const auto table = complete_rows(rows, items);
   if (!table.refusal.empty()) return Refusal{table.refusal};
   std::vector<double> sums;

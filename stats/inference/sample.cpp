@@ -25,7 +25,8 @@ Result<Sample> present(std::span<const double> values) {
 }
 
 Result<PairedSample> present_pairs(std::span<const double> x, std::span<const double> y) {
-  if (x.size() != y.size()) throw std::invalid_argument("paired values must have the same length");
+  if (x.size() != y.size())
+    throw std::invalid_argument("paired values: x and y differ in length; give one y for each x");
   PairedSample out;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i]) || std::isnan(y[i])) {
@@ -81,7 +82,9 @@ Wide cross_squares(std::span<const Wide> x, const Moments& of_x, std::span<const
 
 CompleteRows complete_rows(std::span<const double> rows, int k) {
   if (k < 1 || rows.size() % static_cast<std::size_t>(k) != 0)
-    throw std::invalid_argument("values must fill whole rows of at least one");
+    throw std::invalid_argument(
+        "table of participants: the values do not fill whole rows; give k values for each participant, k at "
+        "least 1");
   CompleteRows out{.k = k};
   const auto width = static_cast<std::size_t>(k);
   for (std::size_t first = 0; first < rows.size(); first += width) {

@@ -17,8 +17,11 @@ const Refusal too_few{"not enough values"};
 
 void require_valid(const TTestOptions& options) {
   if (!(options.confidence > 0 && options.confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
-  if (!std::isfinite(options.null_value)) throw std::invalid_argument("the null value must be finite");
+    throw std::invalid_argument(
+        "t test: the confidence is not between 0 and 1; set TTestOptions::confidence to one such as 0.95");
+  if (!std::isfinite(options.null_value))
+    throw std::invalid_argument(
+        "t test: the null value is not finite; set TTestOptions::null_value to a number");
 }
 
 /// An estimate, its standard error and the largest of the means that it is computed from, all times

@@ -117,7 +117,7 @@ void fill_pratt(SignedRank& out, std::span<const double> differences) {
 
 Result<SignedRank> signed_rank(std::span<const double> differences, double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument("signed_rank: the confidence is not between 0 and 1; give one such as 0.95");
   const auto sample = present(differences);
   if (!sample) return Refusal{sample.reason()};
   if (sample->values.empty()) return Refusal{"no values"};

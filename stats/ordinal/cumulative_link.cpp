@@ -33,7 +33,8 @@ LinkValue link_value(Link link, double x) {
 
 double link_quantile(Link link, double p) {
   if (link == Link::Probit) return normal_quantile(p);
-  if (!(p > 0 && p < 1)) throw std::invalid_argument("a probability must lie between 0 and 1");
+  if (!(p > 0 && p < 1))
+    throw std::invalid_argument("link_quantile: p is not between 0 and 1; give a probability in (0, 1)");
   return std::log(p) - std::log1p(-p);
 }
 
@@ -195,7 +196,9 @@ Result<OrdinalFit> fit_cumulative_link(std::span<const double> ratings, std::spa
 
 LikelihoodRatio likelihood_ratio(double log_likelihood_full, double log_likelihood_reduced, int df) {
   use_gsl_codes();
-  if (df < 1) throw std::invalid_argument("a likelihood ratio needs at least one degree of freedom");
+  if (df < 1)
+    throw std::invalid_argument(
+        "likelihood_ratio: df is below 1; give the number of parameters by which the fits differ");
   const double chi2 = std::max(0.0, 2 * (log_likelihood_full - log_likelihood_reduced));
   return {chi2, df, gsl_cdf_chisq_Q(chi2, df)};
 }
@@ -286,11 +289,16 @@ Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> rating
                                                   std::span<const int> participants, Link link, int points,
                                                   Separation separation) {
   if (points < 1 || points > 101)
-    throw std::invalid_argument("the nodes of quadrature must be 1 to 101, not " + std::to_string(points));
+    throw std::invalid_argument(
+        "fit_cumulative_link_mixed: `points` must be 1 to 101 nodes of quadrature, not " +
+        std::to_string(points));
   if (separation == Separation::Penalise && link != Link::Logit)
-    throw std::invalid_argument("a penalised fit needs the logit link");
+    throw std::invalid_argument(
+        "fit_cumulative_link_mixed: Separation::Penalise needs log odds; use it with Link::Logit alone");
   if (participants.size() != ratings.size())
-    throw std::invalid_argument("ratings and participants differ in length");
+    throw std::invalid_argument(
+        "fit_cumulative_link_mixed: ratings and participants differ in length; give one participant for each "
+        "rating");
   const auto rows = ordinal_rows(ratings, predictors, participants);
   if (!rows) return Refusal{rows.reason()};
   if (const auto reason = why_too_few(*rows); !reason.empty()) return Refusal{reason};

@@ -52,7 +52,9 @@ MixedLikelihood::MixedLikelihood(std::span<const int> category, std::span<const 
     : category_(category.begin(), category.end()), link_(link) {
   use_gsl_codes();
   if (points < 1 || category.size() != participant.size() || category.empty()) {
-    throw std::invalid_argument("a mixed likelihood needs rows, their participants and nodes");
+    throw std::invalid_argument(
+        "MixedLikelihood: no rows, not one participant for each, or no nodes; give both columns one length "
+        "above 0, and points from 1");
   }
   groups_.resize(static_cast<std::size_t>(*std::max_element(participant.begin(), participant.end())) + 1);
   for (std::size_t i = 0; i < participant.size(); ++i)

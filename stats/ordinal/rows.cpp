@@ -15,7 +15,10 @@ void require_lengths(std::size_t n, std::span<const Predictor> predictors,
                      std::span<const int> participants) {
   bool equal = participants.empty() || participants.size() == n;
   for (const auto& predictor : predictors) equal &= predictor.values.size() == n;
-  if (!equal) throw std::invalid_argument("ratings, predictors and participants differ in length");
+  if (!equal)
+    throw std::invalid_argument(
+        "ordinal fit: ratings, predictors and participants differ in length; give each one value for every "
+        "row");
 }
 
 std::vector<std::size_t> whole_rows(std::span<const double> ratings, std::span<const Predictor> predictors) {
@@ -71,7 +74,8 @@ std::vector<Predictor> indicators(const std::string& name, std::span<const doubl
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   if (!std::binary_search(numbers.begin(), numbers.end(), reference)) {
-    throw std::invalid_argument("no row belongs to the reference group");
+    throw std::invalid_argument(
+        "indicators: no row belongs to the reference group; choose a group that occurs");
   }
   std::vector<Predictor> columns;
   for (const double number : numbers) {

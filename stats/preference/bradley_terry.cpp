@@ -27,11 +27,17 @@ struct Wins {
 
 Wins checked(std::span<const double> wins, int items) {
   const auto n = static_cast<std::size_t>(std::max(items, 0));
-  if (items < 1 || wins.size() != n * n) throw std::invalid_argument("wins must be items by items");
+  if (items < 1 || wins.size() != n * n)
+    throw std::invalid_argument(
+        "Bradley-Terry: the wins do not fit the number of items; give items x items counts, items at least "
+        "1");
   for (std::size_t i = 0; i < wins.size(); ++i) {
     if (!(wins[i] >= 0) || std::isinf(wins[i]))
-      throw std::invalid_argument("wins must be finite and not negative");
-    if (i % (n + 1) == 0 && wins[i] > 0) throw std::invalid_argument("an item was compared with itself");
+      throw std::invalid_argument(
+          "Bradley-Terry: a count of wins is negative or not finite; give finite counts of 0 or more");
+    if (i % (n + 1) == 0 && wins[i] > 0)
+      throw std::invalid_argument(
+          "Bradley-Terry: an item has wins over itself; set the diagonal of the wins to 0");
   }
   return {wins, items};
 }
@@ -222,7 +228,8 @@ struct Fitted {
 Result<Fitted> fit_wins(std::span<const double> counts, int items, BradleyTerryMethod method,
                         double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument(
+        "bradley_terry: the confidence is not between 0 and 1; give one such as 0.95");
   const Wins wins = checked(counts, items);
   if (items < 2) return Refusal{"fewer than two items"};
   const auto rows = pair_rows(wins);

@@ -95,7 +95,9 @@ double approximate_p(int items, int triads) {
 
 Result<CircularTriads> circular_triads(std::span<const double> wins, int items) {
   const auto n = static_cast<std::size_t>(std::max(items, 0));
-  if (wins.size() != n * n) throw std::invalid_argument("wins must be items by items");
+  if (wins.size() != n * n)
+    throw std::invalid_argument(
+        "circular_triads: the wins do not fit the number of items; give items x items entries");
   if (items < 3) return Refusal{"fewer than three items have no triad"};
   if (items > 1000) return Refusal{"more than 1,000 items"};
   CircularTriads out{.items = items, .triads = all_triads(items), .most = most_circular(items)};

@@ -174,7 +174,9 @@ void check_trials(std::span<const Comparison> trials, int items) {
   const auto outside = [items](int item) { return item < 0 || item >= items; };
   for (const auto& t : trials) {
     if (outside(t.first) || outside(t.second) || t.first == t.second || !std::isfinite(t.position))
-      throw std::invalid_argument("a comparison needs two different items of the list and a finite position");
+      throw std::invalid_argument(
+          "paired comparisons: a trial has an item outside the list, one item twice or no finite position; "
+          "leave it out or mend it");
   }
 }
 

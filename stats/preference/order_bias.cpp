@@ -57,7 +57,7 @@ OrderTerm last_term(const OrderFit& with, const LogitFit& without, std::span<con
 
 Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, double confidence) {
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("a confidence must lie between 0 and 1");
+    throw std::invalid_argument("order_bias: the confidence is not between 0 and 1; give one such as 0.95");
   check_trials(trials, items);
   if (trials.empty()) return Refusal{"no trial"};
   if (items < 2) return Refusal{"fewer than two items"};

@@ -16,7 +16,9 @@ double Curve::mu(double delta) const { return std::exp(log_a + b * delta); }
 
 double jackknife_covariance(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size() || x.size() < 2)
-    throw std::invalid_argument("a jackknife needs at least two values of each estimate, and equally many");
+    throw std::invalid_argument(
+        "jackknife_covariance: x and y differ in length or have fewer than two values; give one of each for "
+        "every participant left out");
   const double n = static_cast<double>(x.size());
   double mean_x = 0, mean_y = 0, sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -54,7 +56,9 @@ double CurveSpread::largest_relative_half_width(std::span<const double> deltas) 
 }
 
 CurveSpread jackknife_curve(const Curve& estimate, std::span<const Curve> without_one, double confidence) {
-  if (without_one.size() < 4) throw std::invalid_argument("a jackknife of a curve needs four participants");
+  if (without_one.size() < 4)
+    throw std::invalid_argument(
+        "jackknife_curve: fewer than four participants; use a pilot with at least four");
   std::vector<double> log_a, b;
   for (const auto& curve : without_one) {
     log_a.push_back(curve.log_a);

@@ -57,7 +57,9 @@ DirectModel::DirectModel(std::span<const PilotObservation> observations, double 
   int participants = 0;
   double n = 0;
   for (const auto& o : observations) {
-    if (!(o.mu > 0)) throw std::invalid_argument("a mean frame rate must be positive");
+    if (!(o.mu > 0))
+      throw std::invalid_argument(
+          "DirectModel: a mean frame rate is not above 0; leave out observations of such settings");
     participants = std::max(participants, o.participant + 1);
     log_mu_centre_ += std::log(o.mu);
     delta_centre_ += o.delta;
@@ -80,7 +82,8 @@ DirectModel::DirectModel(std::span<const PilotObservation> observations, double 
 
 DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   if (!weights.empty() && weights.size() != sums_.size())
-    throw std::invalid_argument("one weight for each participant is needed");
+    throw std::invalid_argument(
+        "DirectModel: not one weight for each participant; give as many as participants(), or none");
   Sums out;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
     const double w = weights.empty() ? 1 : weights[p];

@@ -191,7 +191,9 @@ bool is_minimum(const Scaled& data, const Candidate& at) {
 
 Result<Scaled> clean(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
   if (x.size() != y.size() || (!weights.empty() && weights.size() != x.size())) {
-    throw std::invalid_argument("x, y and weights differ in length");
+    throw std::invalid_argument(
+        "fit_exponential: x, y and weights differ in length; give one y for each x, and one weight for each "
+        "or none");
   }
   Scaled data;
   data.weighted = !weights.empty();

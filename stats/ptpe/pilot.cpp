@@ -24,7 +24,9 @@ std::size_t index_of(const std::vector<double>& axis, double value) {
 void require_finite(const PilotRating& rating) {
   for (const double value : {rating.mu, rating.delta, rating.realised_mu, rating.realised_mu_arithmetic,
                              rating.realised_delta, rating.score}) {
-    if (!std::isfinite(value)) throw std::invalid_argument("a rating holds a number that is not finite");
+    if (!std::isfinite(value))
+      throw std::invalid_argument(
+          "PilotTable: a rating holds a number that is not finite; leave this rating out");
   }
 }
 
@@ -81,7 +83,8 @@ bool PilotTable::all_equal() const { return all_equal_; }
 
 ScoreGrid PilotTable::grid(PilotMean mean, std::span<const double> weights) const {
   if (!weights.empty() && weights.size() != static_cast<std::size_t>(participants_)) {
-    throw std::invalid_argument("one weight for each participant is needed");
+    throw std::invalid_argument(
+        "PilotTable::grid: not one weight for each participant; give as many as participants(), or none");
   }
   ScoreGrid grid{mu_, delta_, std::vector<std::optional<GridNode>>(mu_.size() * delta_.size())};
   for (std::size_t cell = 0; cell < grid.nodes.size(); ++cell) {

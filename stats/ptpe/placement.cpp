@@ -56,14 +56,18 @@ double inner_delta(const std::vector<double>& deltas, std::size_t trial) {
 }  // namespace
 
 PlacementPrior placement_prior(std::span<const PlacementSetting> settings) {
-  if (settings.size() < 2) throw std::invalid_argument("placement needs two settings");
+  if (settings.size() < 2)
+    throw std::invalid_argument("placement_prior: fewer than two settings; give at least two");
   double low = HUGE_VAL, high = 0, delta = 0;
   for (const PlacementSetting& one : settings) {
     low = std::min(low, one.mu);
     high = std::max(high, one.mu);
     delta = std::max(delta, one.delta);
   }
-  if (!(low > 0 && high > low)) throw std::invalid_argument("placement needs settings of different means");
+  if (!(low > 0 && high > low))
+    throw std::invalid_argument(
+        "placement_prior: all means are equal, or one is not above 0; give settings of different means above "
+        "0");
   PlacementPrior prior;
   const double last_b = delta > 0 ? std::min(largest_b, std::log(high / low) / delta) : 0;
   for (int i = 0; i < grid_points; ++i) {
@@ -82,7 +86,7 @@ Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrio
       quest_(make_quest(settings_, prior)) {
   if (!(rules.bracket > 1) || rules.between < 0 || rules.most_of_one < 1)
     throw std::invalid_argument(
-        "a placement needs bracket above 1, between of at least 0 and most_of_one of at least 1");
+        "Placement: a rule is out of range; set bracket above 1, between from 0 and most_of_one from 1");
   for (const PlacementSetting& one : settings_) deltas_.push_back(one.delta);
   std::ranges::sort(deltas_);
   deltas_.erase(std::unique(deltas_.begin(), deltas_.end()), deltas_.end());
@@ -114,7 +118,10 @@ int Placement::next() const {
       least = distance;
     }
   }
-  if (best < 0) throw std::logic_error("every setting was shown as often as the rules allow");
+  if (best < 0)
+    throw std::logic_error(
+        "Placement::next: every setting was shown as often as the rules allow; end the session or raise "
+        "PlacementRules::most_of_one");
   return best;
 }
 
