@@ -66,7 +66,8 @@ ExactMean sum_of(const ExactMean& x, const ExactMean& y) {
   return {x.sum * (count / x.count) + y.sum * (count / y.count), count};
 }
 
-/// Each participant's sum over the treatments of a level; NaN if one of them was not judged.
+/// Each participant's sum of mean scores over the treatments of one level of the factor; NaN if one of them
+/// was not judged.
 std::vector<ExactMean> sums_of(const ScoreTable& table, std::span<const FactorPlace> places, int n_star,
                                int level) {
   std::vector<ExactMean> out(static_cast<std::size_t>(table.participants()), ExactMean{0, 1});

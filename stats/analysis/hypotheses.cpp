@@ -17,8 +17,8 @@ namespace stats {
 
 namespace {
 
-// Each test of Task 1 compares two methods at one size n_* of the water, by a paired t test (an exact sign
-// test if all differences are equal) or by the mixed model.
+// Each test of Task 1 (ratings) compares two methods at one size n_* of the water (nominal number of
+// particles), by a paired t test (an exact sign test if all differences are equal) or by the mixed model.
 
 /// Difference of two methods' mean scores, a - b, with its standard error.
 struct ScoreDifference {
@@ -27,7 +27,7 @@ struct ScoreDifference {
   double p(Alternative side, double null = 0) const;
 };
 
-/// One test of Task 1 before its p is computed.
+/// One test of Task 1 (ratings) before its p is computed.
 struct ScoreContrast {
   HypothesisTest test;  ///< label, methods and n; its reason says why `difference` could not be computed
   std::optional<ScoreDifference> difference;
@@ -94,8 +94,8 @@ void set_interval(ScoreContrast& contrast, double confidence) {
   contrast.test.ci_confidence = confidence;
 }
 
-/// Sets paper_holds from the uncorrected two-sided p of the paired test, as the paper does; false in the
-/// mixed model, which has no such p.
+/// Sets paper_holds from the uncorrected two-sided p of the paired test, as the claim's paper does; false in
+/// the mixed model, which has no such p.
 void set_paper(ScoreContrast& contrast, const Family& family) {
   HypothesisTest& test = contrast.test;
   test.paper_holds =
@@ -105,8 +105,9 @@ void set_paper(ScoreContrast& contrast, const Family& family) {
 
 double ScoreDifference::p(Alternative side, double null) const { return student_p(t(null), df, side); }
 
-/// The contrast of methods a and b at one n_*, with the claim's margin for this score or, if it has none, the
-/// table's. `model` is the mixed model of all answers of the table; null for a paired test.
+/// The contrast of methods a and b at one n_* (nominal number of particles), with the claim's margin for this
+/// score or, if it has none, the table's. `model` is the mixed model of all answers of the table; null for a
+/// paired test.
 ScoreContrast score_contrast(const MethodClaim& claim, const ScoreTable& table,
                              const Result<MixedScores>* model, int n_star, const std::string& a,
                              const std::string& b) {
@@ -233,7 +234,7 @@ FamilyTest test_of(ScoreContrast contrast, const Family& family) {
   return superiority(std::move(contrast), family);
 }
 
-/// Adds a test for each score, pair of methods and n_*.
+/// Adds a test for each score, pair of methods and n_* (nominal number of particles).
 void add_tests(Family& family, const Scores& scores) {
   const MethodClaim& claim = family.claim;
   for (const std::string& score : claim.scores) {
@@ -270,7 +271,7 @@ Hypothesis test_claim(const MethodClaim& claim, const Scores& scores, const std:
 }
 
 /// Adds the verdict of the paired tests to a hypothesis that the mixed model decides, and the verdict of the
-/// paper's procedure, which uses paired tests.
+/// procedure of the claim's paper, which uses paired tests.
 void put_beside(Hypothesis& out, Hypothesis paired) {
   for (std::size_t i = 0; i < out.tests.size(); ++i) {
     out.tests[i].paper_p = paired.tests[i].paper_p;

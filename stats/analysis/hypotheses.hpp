@@ -48,11 +48,11 @@ struct HypothesisTest {
   bool holds = false;             ///< holds_holm or holds_alone, whichever the plan's rule uses
   bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)
   std::string reason;             ///< why there is no p, which then counts as 1 in the family
-  std::optional<double> paper_p;  ///< p of the paper's procedure: two-sided, uncorrected
+  std::optional<double> paper_p;  ///< p as the claim's paper computes it: two-sided, uncorrected
   bool paper_holds = false;
-  /// For claims of Task 2 with MethodClaim::larger_families: p of the two-sided test after Holm over the
-  /// pairs that the claims of Task 2 compare (five in the paper's Fig. 10), and over all pairs (ten with five
-  /// methods).
+  /// For claims of Task 2 (choices between two methods) with MethodClaim::larger_families: p of the two-sided
+  /// test after Holm over the pairs that the claims of Task 2 compare (five in the ViP-Fluid paper's Fig.
+  /// 10), and over all pairs (ten with five methods).
   std::optional<double> p_holm_of_five, p_holm_of_ten;
   /// By how many points missing answers must be worse to change `holds`; set by add_tipping_points().
   std::optional<Result<TippingPoint>> tipping;
@@ -132,7 +132,7 @@ ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::str
 /// p = 1. The result is only displayed; the decisions use alpha for each claim.
 void correct_over_claims(std::span<Hypothesis> claims, std::size_t of);
 
-/// True if a claim of Task 2 compares the two methods.
+/// True if a claim of Task 2 (choices between two methods) compares the methods a and b.
 bool compares_pair(std::span<const MethodClaim> claims, const std::string& a, const std::string& b);
 
 }  // namespace stats

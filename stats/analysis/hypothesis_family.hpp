@@ -13,8 +13,8 @@ namespace stats {
 
 struct FamilyTest {
   HypothesisTest test;
-  /// True if the estimate lies in the claimed direction. Always true in Task 1 for equivalence, which has no
-  /// direction, and for one-sided tests, whose p includes the direction.
+  /// True if the estimate lies in the claimed direction. Always true in Task 1 (ratings) for equivalence,
+  /// which has no direction, and for one-sided tests, whose p includes the direction.
   bool right = true;
 };
 

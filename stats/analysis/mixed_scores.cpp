@@ -11,7 +11,8 @@ std::string cell_name(int n_star, int method) {
   return "n_star" + std::to_string(n_star) + ":method" + std::to_string(method);
 }
 
-/// Adds an indicator column for each combination of n_* and method that was judged.
+/// Adds an indicator column for each combination of n_* (nominal number of particles) and method that was
+/// judged.
 void add_cells(std::vector<Predictor>& terms, const std::vector<MethodScore>& answers) {
   std::set<std::pair<int, int>> cells;
   for (const auto& answer : answers) cells.insert({answer.n_star, answer.method});

@@ -20,8 +20,8 @@ struct MethodEffect {
   double estimate = 0, se = 0;  ///< log odds ratio, method against reference
   std::array<double, 2> ci{};   ///< Wald interval
   double z = 0, p = 0;
-  /// Corrected over all methods of the study but the reference, at this n_*; a method without answers counts
-  /// as p = 1.
+  /// Corrected over all methods of the study but the reference, at this n_* (nominal number of particles); a
+  /// method without answers counts as p = 1.
   std::optional<double> p_holm, p_bh;
 };
 
@@ -35,11 +35,11 @@ struct OrdinalEffects {
   Result<LikelihoodRatio> overall = Refusal{"not computed"};
 };
 
-/// Fits the model with the logit link and adaptive quadrature. `scores`: single answers, all of one n_*.
-/// Separated answers are fitted with a penalty: fit.why_penalised names the columns as "method" + index.
-/// Refused: no answer about the reference or about another method, and all refusals of
-/// fit_cumulative_link_mixed. `methods`: number of methods in the study, including any without answers.
-/// confidence in (0, 1).
+/// Fits the model with the logit link and adaptive quadrature. `scores`: single answers, all of one n_*
+/// (nominal number of particles). Separated answers are fitted with a penalty: fit.why_penalised names the
+/// columns as "method" + index. Refused: no answer about the reference or about another method, and all
+/// refusals of fit_cumulative_link_mixed. `methods`: number of methods in the study, including any without
+/// answers. confidence in (0, 1).
 Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, int methods,
                                        double confidence);
 

@@ -57,7 +57,7 @@ enum class DecisionRule {
          ///< rule
 };
 
-/// The kind of tests of scores in Task 1.
+/// The kind of tests of scores in Task 1 (ratings).
 enum class ScoreTests {
   Paired,  ///< paired t tests of participants' means
   Mixed,   ///< t tests of the mixed model of all answers (mixed_scores.hpp)

@@ -33,7 +33,7 @@ struct ScoreScale {
   double margin = 0.5;             ///< margin of equivalence and non-inferiority, in points of the score
 };
 
-/// One mean for each participant, n_* and method.
+/// One mean for each participant, n_* (nominal number of particles) and method.
 class ScoreTable {
  public:
   /// Averages over scenes (and visits) within participant x n_* x method. std::invalid_argument for an index
@@ -49,7 +49,8 @@ class ScoreTable {
   std::span<const double> column(int n_star, int method) const;
   /// The same means as sums and counts, for code that must find equal differences of means.
   std::span<const ExactMean> means(int n_star, int method) const;
-  /// Participants by methods, row after row, of all participants with an answer at this n_*; NaN = missing.
+  /// Participants by methods, row after row, of all participants with an answer at this n_* (nominal number
+  /// of particles); NaN = missing.
   std::vector<double> rows(int n_star) const;
   /// Nonzero for each participant who was planned to judge this method, answered or not.
   std::span<const char> planned(int n_star, int method) const;

@@ -71,7 +71,7 @@ MethodComparison compare(const ScoreTable& table, int n_star, int a, int b, cons
   return out;
 }
 
-/// Corrects one kind of p-value over the comparisons of one n_*.
+/// Corrects one kind of p-value over the comparisons at one n_* (nominal number of particles).
 template <class GetP>
 void correct(std::span<MethodComparison> family, GetP p_of, std::optional<double> MethodComparison::*holm,
              std::optional<double> MethodComparison::*bh) {

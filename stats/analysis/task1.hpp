@@ -35,7 +35,8 @@ struct MethodCell {
   Result<ShapiroWilk> normality = Refusal{"not computed"};
 };
 
-/// Comparison of two methods at one n_*: difference a - b over participants who judged both.
+/// Comparison of two methods at one n_* (nominal number of particles): difference a - b over participants who
+/// judged both.
 struct MethodComparison {
   int n_star = 0, a = 0, b = 0;
   std::size_t n = 0;                     ///< participants who judged both methods
@@ -74,7 +75,7 @@ struct Omnibus {
 };
 
 struct ScoreAnalysis {
-  std::vector<MethodCell> cells;              ///< ordered by n_*, then by method
+  std::vector<MethodCell> cells;              ///< ordered by n_* (number of particles), then by method
   std::vector<MethodComparison> comparisons;  ///< ordered by n_*, then by pair, a before b
   std::vector<Omnibus> omnibus;
   std::vector<PairPeople> people;  ///< ordered by n_*

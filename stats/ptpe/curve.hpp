@@ -11,7 +11,8 @@
 
 namespace stats {
 
-/// The curve as log mu(delta) = log a + b delta.
+/// The threshold curve as log mu(delta) = log a + b delta, where mu is the just satisfactory mean frame rate
+/// at a standard deviation delta of the frame rate.
 struct Curve {
   double log_a = 0, b = 0;  ///< a in frames/s, b in s/frame
 
@@ -19,7 +20,7 @@ struct Curve {
   double mu(double delta) const;
 };
 
-/// mu(delta) and an interval for it, frames/s.
+/// The threshold frame rate mu(delta) at a standard deviation delta, with intervals for it, all in frames/s.
 struct BandPoint {
   double delta = 0, mu = 0;
   std::array<double, 2> pointwise{};     ///< covers the true mu(delta) at this delta
@@ -37,8 +38,9 @@ struct CurveSpread {
 
   double a_se() const;  ///< standard error of a: a times the standard error of log a
   double b_se() const;
-  /// The band at one delta. The pointwise interval uses Student's t; the simultaneous one, after Working and
-  /// Hotelling (1929), uses Hotelling's T^2 for the two coefficients.
+  /// The band of the threshold frame rate at one standard deviation delta. The pointwise interval uses
+  /// Student's t; the simultaneous one, after Working and Hotelling (1929), uses Hotelling's T^2 for the two
+  /// coefficients.
   BandPoint band(double delta) const;
   /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): the relative
   /// uncertainty of the threshold frame rate.

@@ -90,7 +90,8 @@ void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
   estimate.form = Refusal{reason};
 }
 
-/// Excludes the settings above far_factor times the curve, unless no fit is possible without them.
+/// Excludes the settings whose nominal mean frame rate is above far_factor times the curve, unless no fit is
+/// possible without them.
 void leave_out_far_above(Reach& reach, double level) {
   const auto inner = DirectModel(reach.kept, level).fit();
   if (!inner) return;
@@ -115,7 +116,8 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
   out.kept.assign(observations.begin(), observations.end());
   const auto whole = DirectModel(observations, level).fit();
   if (!whole) return out;
-  std::map<double, std::array<double, 2>> shown;  // lowest and highest mean frame rate, by nominal delta
+  // Lowest and highest mean frame rate, by nominal delta (standard deviation).
+  std::map<double, std::array<double, 2>> shown;
   for (const auto& o : observations) {
     auto& [low, high] = shown.try_emplace(o.nominal_delta, std::array{o.mu, o.mu}).first->second;
     low = std::min(low, o.mu);

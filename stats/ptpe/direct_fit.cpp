@@ -12,7 +12,8 @@ namespace stats {
 
 namespace {
 
-/// The sums of products of the first three terms alone: 1, x (log mu) and d (delta), both centred.
+/// The sums of products of the first three terms alone: 1, x (log of the mean frame rate) and d (its standard
+/// deviation), both centred.
 template <std::size_t Terms>
 std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
   std::array<double, 9> gram{};
@@ -25,7 +26,8 @@ std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
 }  // namespace
 
 /// Parameters of the model in centred variables: u = x - alpha - beta d, with x = log mu and d = delta /
-/// delta_unit, both minus their means. The score minus the level is u (k + m d + q u).
+/// delta_unit, both minus their means, for a frame rate of mean mu and standard deviation delta. The score
+/// minus the level is u (k + m d + q u).
 struct DirectModel::Place {
   static constexpr std::size_t terms = DirectModel::terms, parameters = 5;
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
@@ -92,8 +94,8 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   return out;
 }
 
-/// Ordinary least squares of the score on 1, x = log mu and d = delta / delta_unit, both centred. Empty if
-/// the settings do not determine the plane or the score does not depend on x.
+/// Ordinary least squares of the score on 1, x (log of the mean frame rate) and d (its standard deviation),
+/// both centred. Empty if the settings do not determine the plane or the score does not depend on x.
 std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
   const auto c = solve_positive<3>(plane_gram(sums), {sums.moment[0], sums.moment[1], sums.moment[2]});
   if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;

@@ -22,13 +22,14 @@
 
 namespace stats {
 
-/// The unit in which the fits measure delta, in frames/s. With it every coefficient is of order 1.
+/// The unit in which the fits measure delta, the standard deviation of the frame rate, in frames/s. With it
+/// every coefficient is of order 1.
 constexpr double delta_unit = 10;
 
 struct DirectFit {
   Curve curve;
   double level = 4;
-  double k = 0;  ///< rise of the score with log mu on the curve at delta = 0
+  double k = 0;  ///< rise of the score with log mu, the log of the mean frame rate, on the curve at delta = 0
   double m = 0;  ///< change of k with delta, per frame/s
   double q = 0;  ///< coefficient of (log mu - log mu(delta))^2, mu(delta) being the curve
   double rss = 0;
@@ -53,7 +54,8 @@ class DirectModel {
   /// curve outside the settings shown ("no contour").
   Result<DirectFit> fit(std::span<const double> weights = {}, const DirectFit* start = nullptr) const;
 
-  /// m = q = 0: ordinary least squares of the score on log mu and delta.
+  /// Fits the straight form m = q = 0, a plane: ordinary least squares of the score on the log of the mean
+  /// frame rate and on the standard deviation.
   Result<DirectFit> fit_straight(std::span<const double> weights = {}) const;
 
  private:
@@ -121,13 +123,14 @@ struct Reach {
   int far_above = 0;             ///< number of settings above far_factor times the curve
 };
 
-/// Selects the settings that determine the curve. At a delta where the curve fitted to all settings lies
-/// outside the frame rates shown by more than reach_margin, the settings do not determine the curve and only
-/// bias it: with them the intervals held b in 67 % of simulated pilots with a = 31 frames/s, b = 0.035
-/// s/frame (docs/statistics.md). Such deltas are excluded. If fewer than three deltas are within reach, those
-/// with the smallest distance between curve and frame rates are kept as well, to make up three, so that a fit
-/// remains. Then the settings far above the curve fitted to the remaining settings are excluded, unless no
-/// fit is possible without them. If the fit to all settings is refused, everything is kept.
+/// Selects the settings that determine the curve. At a delta (standard deviation of the frame rate) where the
+/// curve fitted to all settings lies outside the frame rates shown by more than reach_margin, the settings do
+/// not determine the curve and only bias it: with them the intervals held b in 67 % of simulated pilots with
+/// a = 31 frames/s, b = 0.035 s/frame (docs/statistics.md). Such deltas are excluded. If fewer than three
+/// deltas are within reach, those with the smallest distance between curve and frame rates are kept as well,
+/// to make up three, so that a fit remains. Then the settings far above the curve fitted to the remaining
+/// settings are excluded, unless no fit is possible without them. If the fit to all settings is refused,
+/// everything is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
 /// Fits the settings that within_reach() keeps, with a jackknife-t and an expanded percentile bootstrap over

@@ -24,7 +24,8 @@ constexpr std::size_t terms = 9;  // 1, x, e, x e, x^2, e^2, x e^2, e^3, e^4
 using Sums = TermSums<terms>;
 
 /// Parameters of the surface: u = x - alpha - beta e - gamma e^2, with x = log mu minus its mean and e =
-/// (delta - middle) / half. The score minus the level is u (k + m e + q u).
+/// (delta - middle) / half, for a frame rate of mean mu and standard deviation delta. The score minus the
+/// level is u (k + m e + q u).
 struct Place {
   static constexpr std::size_t terms = stats::terms, parameters = 6;
   double alpha = 0, beta = 0, gamma = 0, k = 0, m = 0, q = 0;

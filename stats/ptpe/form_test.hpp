@@ -17,7 +17,8 @@
 
 namespace stats {
 
-/// log mu(delta) = level + slope e + bend e^2, with the jackknife's covariance of the three coefficients.
+/// The threshold frame rate mu at a standard deviation delta: log mu(delta) = level + slope e + bend e^2,
+/// with the jackknife's covariance of the three coefficients.
 struct FreeCurve {
   double middle = 10, half = 10;       ///< frames/s; e = (delta - middle) / half has no unit
   std::array<double, 3> at{};          ///< level, slope, bend
@@ -32,7 +33,7 @@ struct FreeCurve {
 };
 
 /// The test of c = 0, where c is the coefficient `bend` of FreeCurve: with c = 0 the threshold frame rate is
-/// an exponential of delta. Jackknife over participants with Student's t.
+/// an exponential of the frame rate's standard deviation. Jackknife over participants with Student's t.
 struct FormTest {
   double c = 0, se = 0, t = 0;
   int df = 0;

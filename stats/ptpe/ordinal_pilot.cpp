@@ -18,7 +18,8 @@ namespace stats {
 
 namespace {
 
-/// Ratings as categories, at x = log mu and d = delta / delta_unit, each minus its mean.
+/// Ratings as categories, at x = log mu and d = delta / delta_unit, each minus its mean, for a frame rate of
+/// mean mu and standard deviation delta.
 struct Rows {
   std::vector<double> x, d;
   std::vector<int> category, participant;

@@ -1,7 +1,7 @@
 #pragma once
-/// Estimates a and b of the threshold curve mu = a exp(b delta) by an ordinal mixed model: ratings as ordered
-/// categories, people as a random effect. The location depends on mu and delta as the score does in the
-/// direct estimate (stats/ptpe/direct_fit.hpp).
+/// Estimates a and b of the threshold curve mu = a exp(b delta) of mean frame rates mu over standard
+/// deviations delta, by an ordinal mixed model: ratings as ordered categories, people as a random effect. The
+/// location depends on mu and delta as the score does in the direct estimate (stats/ptpe/direct_fit.hpp).
 ///
 ///   P(Y <= j) = Phi(theta_j - k u - m u delta - q u^2 - s_p),  s_p ~ N(0, sd^2)
 ///   u = log mu - log a - b delta
@@ -19,6 +19,8 @@
 
 namespace stats {
 
+/// A fit of the model at the top of this file, with u = log mu - log a - b delta for a mean mu and standard
+/// deviation delta of the frame rate.
 struct OrdinalPilotFit {
   Curve curve;
   double level = 4;

@@ -29,8 +29,9 @@ struct PilotObservation {
   int participant = 0;  ///< 0, 1, ... in ascending order of PilotRating::participant
   double mu = 0, delta = 0;
   double score = 0;
-  double nominal_delta = 0;  ///< nominal delta of the setting; equal numbers form one column of the grid
-  double nominal_mu = 0;     ///< nominal mu of the setting; equal numbers form one row of the grid
+  double nominal_delta =
+      0;                  ///< the setting's nominal standard deviation; equal ones form a column of the grid
+  double nominal_mu = 0;  ///< the setting's nominal mean; equal ones form a row of the grid
 };
 
 /// The mean of the frame rates shown that is used as mu of a setting.
@@ -66,7 +67,7 @@ class PilotTable {
   std::size_t ratings_ = 0;
   bool all_equal_ = true;
   std::vector<double> mu_, delta_;
-  std::vector<Entry> entries_;  ///< participant x cell; the cells are the nominal (mu, delta), row-major
+  std::vector<Entry> entries_;  ///< participant x cell (setting), the cells row-major over mu_ x delta_
 };
 
 /// The contour estimate: the contour of the mean scores is sampled along lines of constant delta one frame/s

@@ -14,7 +14,7 @@ namespace stats {
 
 namespace {
 
-/// A person's mean scores: by nominal delta, then by nominal mean frame rate.
+/// A person's mean scores: by nominal standard deviation of the frame rate, then by nominal mean.
 using Scores = std::map<double, std::map<double, double>>;
 
 std::vector<Scores> scores_of(const PilotTable& table) {
@@ -34,8 +34,8 @@ std::vector<double> rates_of(const std::vector<Scores>& people) {
   return rates;
 }
 
-/// A person's slope: points of the scale for each doubling of the frame rate. Empty if no delta was shown at
-/// two frame rates.
+/// A person's slope: points of the scale for each doubling of the frame rate. Empty if no standard deviation
+/// was shown at two mean frame rates.
 std::optional<double> slope_of(const Scores& scores) {
   double xy = 0, xx = 0;
   for (const auto& [delta, row] : scores) {
@@ -53,7 +53,8 @@ std::optional<double> slope_of(const Scores& scores) {
   return xx > 0 ? std::optional(xy / xx) : std::nullopt;
 }
 
-/// Mean score at `high` minus that at `low`, over the deltas at which both were shown.
+/// Mean score at the mean frame rate `high` minus that at `low`, over the standard deviations at which both
+/// were shown.
 std::optional<double> rise_between(const Scores& scores, double low, double high) {
   double sum = 0;
   int n = 0;

@@ -46,8 +46,8 @@ std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
 
 /// `band`: the curve by scale_end_curve() with its confidence band. Returns the doubt "no_band" if there is
 /// no band; "curve_outside_band" if the direct curve, which the fluid solver reads, leaves the band at one of
-/// `deltas`. In both cases a file for the solver cannot state where the curve is valid. Empty without a
-/// doubt.
+/// the standard deviations `deltas`. In both cases a file for the solver cannot state where the curve is
+/// valid. Empty without a doubt.
 std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
                                      std::span<const double> deltas);
 

@@ -104,8 +104,8 @@ int Placement::next() const {
   const bool above = inner ? trial % 2 == 0 : trial / 2 % 2 == 0;
   const double contour = a().mean * std::exp(b().mean * delta);
   const double wanted = contour * (above ? rules_.bracket : 1 / rules_.bracket);
-  // Finds the setting nearest to `wanted`. A setting of another delta is taken only if none of this delta may
-  // be shown again.
+  // Finds the setting nearest to `wanted`. A setting of another standard deviation (delta) is taken only if
+  // none of this one may be shown again.
   constexpr double other_delta = 1e3;
   int best = -1;
   double least = 0;

@@ -45,9 +45,10 @@ PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 /// Rules of one session.
 struct PlacementRules {
   /// Number of first trials, which use the standard deviations between the smallest and the largest in turn.
-  /// Without such trials the form of the contour cannot be checked, and estimate_direct() has no fit.
+  /// Without such trials the form of the contour, the just satisfactory mean frame rate over the standard
+  /// deviation, cannot be checked, and estimate_direct() has no fit.
   int between = 3;
-  /// Ratio, above 1, of a wanted mean to the estimated contour, or of the contour to the mean.
+  /// Ratio, above 1, of a wanted mean frame rate to the estimated contour, or of the contour to that mean.
   double bracket = 1.35;
   int most_of_one = 1000000;  ///< largest number of times that a setting is shown in a session
 };

@@ -16,7 +16,8 @@ constexpr std::array placement_truth_words{"model", "linear", "lapses", "drift"}
 constexpr double true_slope = 0.14;     // scores per frame/s
 constexpr double true_person_sd = 0.5;  // scores
 constexpr double lapse_share = 0.1;
-constexpr double line_end = 20;  // delta, frames/s: the straight contour meets the exponential here and at 0
+/// Standard deviation in frames/s: the straight contour and the exponential meet here and at 0.
+constexpr double line_end = 20;
 constexpr int lowest_score = 1, highest_score = 7;
 constexpr double middle_score = 4;
 

@@ -8,8 +8,9 @@
 
 namespace stats {
 
-/// How the simulated people differ from the model that the placement assumes. In every case, each person's
-/// scores are also shifted by a normal amount with an sd of 0.5 scores.
+/// How the simulated people differ from the model that the placement assumes; mu and delta are the mean and
+/// the standard deviation of the frame rate shown. In every case, each person's scores are also shifted by a
+/// normal amount with an sd of 0.5 scores.
 enum class PlacementTruth {
   Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; all people have the
            ///< same a and b

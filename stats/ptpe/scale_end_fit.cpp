@@ -45,7 +45,7 @@ struct EndScale {
   }
 };
 
-/// The ratings of one setting at one realised mu and delta.
+/// The ratings at one realised mean mu and standard deviation delta of the frame rate.
 struct Group {
   double root = 0;  ///< 2 sqrt(mu / M), where M is the geometric mean of the frame rates
   double e = 0;     ///< delta minus its mean, in units of delta_unit
@@ -83,7 +83,7 @@ std::vector<Group> groups_of(std::span<const PilotObservation> observations, con
   return out;
 }
 
-/// Parameters of the model. log mu(delta) minus the mean of log mu is alpha + beta e.
+/// Parameters of the model. On the threshold curve, log mu minus its mean over the ratings is alpha + beta e.
 struct CurvePlace {
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Estimates the threshold curve mu(delta) = a exp(b delta) by a model of the bounded rating scale. The bands
-/// in the solver's file come from this estimate.
+/// Estimates the threshold curve mu(delta) = a exp(b delta) of mean frame rates mu over standard deviations
+/// delta by a model of the bounded rating scale. The bands in the solver's file come from this estimate.
 ///
 ///   E[score] = S(x),   x = x0 + k u + m u e + q u^2,   u = (sqrt(mu) - sqrt(a exp(b delta))) 2 / sqrt(M)
 ///

@@ -26,8 +26,8 @@ std::optional<ContourPoint> crossing(const Node& p, const Node& q, double level)
   return ContourPoint{at.delta, at.mu};
 }
 
-/// The surface along a line of constant nominal delta: one node for each row; no nodes if the line lies
-/// outside the grid's columns.
+/// The surface of mean scores along a line of constant nominal standard deviation: one node for each row; no
+/// nodes if the line lies outside the grid's columns.
 std::vector<Node> line_nodes(const ScoreGrid& grid, double delta) {
   const auto right = std::lower_bound(grid.delta.begin(), grid.delta.end(), delta);
   if (right == grid.delta.end() || (right == grid.delta.begin() && delta < *right)) return {};

@@ -36,7 +36,8 @@ struct ContourPoint {
   double delta = 0, mu = 0;  ///< frames/s
 };
 
-/// A contour sampled along lines of constant nominal delta.
+/// A contour of the mean scores over mean frame rates mu and standard deviations delta, sampled along lines
+/// of constant nominal delta.
 struct Contour {
   double level = 0;
   std::vector<ContourPoint> points;  ///< ordered by line, then by ascending mu
@@ -52,7 +53,8 @@ struct Contour {
 /// crossing lies between two neighbouring scores, one above and one below the level. A score equal to the
 /// level (to 1e-12) is not a crossing; a line that has such a score and no crossing is counted in on_node.
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas);
-/// Nominal deltas of the lines: from the first column on in steps of 1 frame/s, and the last column.
+/// Nominal standard deviations of the lines: from the grid's first column on in steps of 1 frame/s, and the
+/// last column.
 std::vector<double> contour_lines(const ScoreGrid& grid);
 
 /// Fits mu = a exp(b delta) to the contour's points. Refused: fewer than three points, or as in
