@@ -84,7 +84,7 @@ struct ScoreAnalysis {
 
 ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan);
 
-/// Values of the participants with both methods, in the same order.
+/// Values of the participants with both methods; x[i] and y[i] are of one participant.
 struct PairedValues {
   std::vector<double> x, y;
   std::vector<double> differences() const;

@@ -1,6 +1,7 @@
 #pragma once
-/// Equivalence by paired t-tests against margins (Schuirmann 1987; Lakens 2017). Missing values, refusals and
-/// errors are as in t_test.hpp.
+/// Equivalence by paired t-tests against margins (Schuirmann 1987; Lakens 2017). A pair with a NaN is
+/// dropped. Refused: fewer than two pairs, an infinite value, differences that are constant up to rounding, a
+/// t beyond the range of double. std::invalid_argument if x and y differ in length.
 
 #include <array>
 #include <cstddef>

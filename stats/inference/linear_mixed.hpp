@@ -27,8 +27,9 @@ struct LinearMixedFit {
   std::vector<std::string> left_out;     ///< terms that are combinations of earlier ones
   std::vector<double> beta, covariance;  ///< coefficients of `terms`, and their covariance (row-major)
   double sd_participant = 0;
-  std::optional<double> sd_thing;  ///< empty if no participant answered twice about one thing; the effect of
-                                   ///< participant and thing is then part of the residual
+  /// Standard deviation of the effect of a participant with a thing. Empty if no participant answered twice
+  /// about one thing; this effect is then part of the residual.
+  std::optional<double> sd_thing;
   double sd_residual = 0;
   double criterion = 0;  ///< -2 times the restricted log-likelihood
   int n = 0, participants = 0;

@@ -51,7 +51,8 @@ struct Comparison {
 /// finite.
 void check_trials(std::span<const Comparison> trials, int items);
 
-/// Counts of wins: items by items, row after row, as bradley_terry() takes them.
+/// Counts of wins for bradley_terry(): items by items, row after row; entry (i, j) is how often i was
+/// preferred to j.
 std::vector<double> win_table(std::span<const Comparison> trials, int items);
 
 /// One row for each trial, a success if the first item was chosen. The design has a column for the strength

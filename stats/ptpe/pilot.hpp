@@ -29,9 +29,8 @@ struct PilotObservation {
   int participant = 0;  ///< 0, 1, ... in ascending order of PilotRating::participant
   double mu = 0, delta = 0;
   double score = 0;
-  double nominal_delta =
-      0;                  ///< the setting's nominal standard deviation; equal ones form a column of the grid
-  double nominal_mu = 0;  ///< the setting's nominal mean; equal ones form a row of the grid
+  double nominal_delta = 0;  ///< nominal standard deviation; equal ones form one column of the grid
+  double nominal_mu = 0;     ///< nominal mean; equal ones form one row of the grid
 };
 
 /// The mean of the frame rates shown that is used as mu of a setting.
@@ -98,7 +97,8 @@ inline constexpr double largest_failed_share = 0.05;
 Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
                                  const BootstrapOptions& options);
 
-/// A contour, its fitted curve, and the curve's uncertainty over participants.
+/// A contour of the mean scores, the curve a exp(b delta) fitted to it, and the curve's uncertainty over
+/// participants.
 struct PilotEstimate {
   Contour contour;
   Result<ExponentialFit> fit = Refusal{"not computed"};
