@@ -37,7 +37,7 @@ enum class BradleyTerryMethod {
 
 struct PairDifference {
   int i = 0, j = 0;       ///< items, from 0, i < j
-  double difference = 0;  ///< lambda_i - lambda_j, logits
+  double difference = 0;  ///< lambda_i - lambda_j of the items' strengths, logits
   double se = 0;
   double se_independent = 0;   ///< standard error that treats answers as independent
   std::array<double, 2> ci{};  ///< Wald interval
@@ -52,7 +52,7 @@ struct BradleyTerry {
   bool bias_reduced = false;
   std::string why_bias_reduced;  ///< why Automatic chose bias reduction; empty if it did not
   double confidence = 0.95;
-  std::vector<double> lambda_ref1, se_ref1;  ///< strengths relative to the first item, and their errors
+  std::vector<double> lambda_ref1, se_ref1;  ///< strengths less the first item's, their standard errors
   std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
   std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0, and their standard errors
   std::vector<std::array<double, 2>> ci_sum0;  ///< Wald intervals

@@ -105,7 +105,8 @@ std::optional<Ratings> collect(const std::vector<PilotObservation>& observations
   return out;
 }
 
-/// Least squares on 1, x, e and e^2: the start of the search.
+/// Least squares of the score on 1, x, e and e^2 (x: log of the mean frame rate; e: its standard deviation,
+/// scaled): the start of the search.
 std::optional<Place> plane(const Sums& sums) {
   constexpr std::array<std::size_t, 4> used{0, 1, 2, 5};
   std::array<double, 16> gram{};
