@@ -21,9 +21,9 @@ struct Task1Scatter {
   AnswerScale answers = AnswerScale::Likert;
   double participant_realism = 0, participant_sickness = 0;
   double method_realism = 0, method_sickness = 0;  ///< SD of the interaction of person and method
-  double noise_realism = 0;
-  double noise_sickness = 0;  ///< SD of the part common to the four items of a report
-  double noise_item = 0;
+  double noise_realism = 0;                        ///< SD of the part of each single answer
+  double noise_sickness = 0;  ///< SD of the part common to the four items of cybersickness about one trial
+  double noise_item = 0;      ///< SD of the part of each single item of cybersickness
   double realism_min = 1, realism_max = 7, item_min = 0, item_max = 3;
 };
 
@@ -37,7 +37,8 @@ struct Task1Answers {
   std::vector<stats::MethodScore> realism, sickness;  ///< scores, ordered by participant
 };
 
-/// Simulates the answers to these trials. An answer does not depend on the other trials.
+/// Simulates the answers to these trials. `key`: seed of the study's random numbers. An answer does not
+/// depend on the other trials.
 Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors& factors,
                           const Scenario& truth, const Task1Scatter& scatter, std::uint64_t key);
 

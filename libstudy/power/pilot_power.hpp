@@ -1,5 +1,6 @@
 #pragma once
-/// Computes how precisely a pilot determines a and b. Pilots with the protocol's plan are simulated and
+/// Computes how precisely a pilot determines the coefficients a and b of the curve mu = a exp(b delta) over
+/// mean mu and standard deviation delta of the frame rate. Pilots with the protocol's plan are simulated and
 /// fitted by the direct estimate (stats/ptpe/direct_fit.hpp).
 
 #include <array>

@@ -8,7 +8,8 @@
 namespace study {
 
 /// Returns an SVG picture. Task 1 and 2: a panel for each hypothesis with a line for each world. Pilot: a
-/// panel for a and one for b, with the half widths of the intervals and the true standard error.
+/// panel for each of the curve's coefficients a and b, with the half widths of their intervals and their true
+/// standard errors.
 std::string power_svg(const Json& json);
 
 }  // namespace study

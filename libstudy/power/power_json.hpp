@@ -18,8 +18,8 @@ Json studies_json(const PowerRequest& request);
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);
 Json power_json(const PowerRequest& request, const PilotPower& pilot);
 
-/// CSV with one line for each n and each value that has a standard error, and one for each n and each closed
-/// form and mean estimate.
+/// CSV with one line for each n and each value that has a standard error, and one for each n and each
+/// "closed_form" (power by a formula) and "mean_estimate".
 std::string power_csv(const Json& json);
 
 }  // namespace study

@@ -39,9 +39,12 @@ struct PowerRequest {
   std::vector<int> n;  ///< numbers of participants, ascending
   int studies = 2000;  ///< simulated studies for each number of participants and each world
   std::uint64_t seed = 1;
-  PlanInForce plan;                 ///< analysis plan, with margins and the pilot's level
-  double power = 0.8;               ///< requested power, 0 to 1
-  std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; each at most once
+  PlanInForce plan;    ///< analysis plan, with margins and the pilot's level
+  double power = 0.8;  ///< requested power, 0 to 1
+  /// Worlds (assumed true effects) to simulate, each at most once. "effect": the effect below; "null": no
+  /// effect; "margin": differences equal to the plan's margins (Task 2: as "null"); "paper": effects as in
+  /// the paper.
+  std::vector<std::string> worlds;
 
   /// True effect. Task 1: difference between two methods, in standard deviations of the paired differences.
   /// Task 2: probability that the better method is chosen, or if effects vary, that a level of effects is
@@ -54,9 +57,12 @@ struct PowerRequest {
   PersonByMethod person_by_method;
   double interval_bias = 0;  ///< Task 2: log odds by which the second interval is favoured
 
-  PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: simulated observer; default: the paper's PTPE@4.0
-  std::string question = {};         ///< Pilot: id of the scale; empty: the first that the trials ask
-  std::optional<double> level = {};  ///< Pilot: score at which the curve is fitted; empty: see level_of()
+  /// Pilot: simulated observer. Default: a and b of the paper's curve at score 4.0.
+  PtpeObserverParameters observer{23.68, 0.02};
+  std::string question = {};  ///< Pilot: id of the scale; empty: the first that the trials ask
+  /// Pilot: score at which the curve is fitted; empty: the plan's, else the protocol's, else the middle of
+  /// the scale.
+  std::optional<double> level = {};
   /// Pilot: requested half widths of the intervals of a (frames/s) and b (s/frame).
   std::optional<double> precision_a, precision_b;
 };

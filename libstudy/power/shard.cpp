@@ -26,7 +26,8 @@ constexpr const char* schema = "vip-power-shard/1";
 constexpr const char* head = R"({"schema":"vip-power-shard/)";
 constexpr std::size_t most_bytes = std::size_t{1} << 28, most_named = 10;
 
-// References to the numbers of an entry in the order of the file, for writing and reading.
+// References to the numbers of a count or of a pilot's outcome, in the order in which a shard's lists hold
+// them; for writing and reading.
 auto figures(auto& count) requires requires { count.holds; }
 {
   return std::tie(count.holds, count.uncorrected, count.against, count.refused, count.estimates,

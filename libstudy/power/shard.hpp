@@ -4,9 +4,9 @@
 ///
 /// JSON: "schema" is vip-power-shard/1; "key" and "cell" are the cell's key and its name in words; "studies"
 /// is studies_json(); "outcomes" is one of two lists:
-/// - Task 1 and 2: for each hypothesis of each world [[supported, any, any_false, paper], tests], where a
-///   test is [holds, uncorrected, against, refused, estimates, estimate_units, participants_least,
-///   participants_most];
+/// - Task 1 and 2: for each hypothesis of each world [[supported, any, any_false, paper], tests], the counts
+///   of HypothesisCount (studies.hpp). A test has the counts of TestCount (studies.hpp): [holds, uncorrected,
+///   against, refused, estimates, estimate_units, participants_least, participants_most];
 /// - pilot: for each study [fitted, interval, a, se, low, high, b, se, low, high], where a and
 ///   b are the estimates, se their standard errors and low and high the ends of their intervals, all by the
 ///   jackknife. Reading a written double gives exactly the same value.

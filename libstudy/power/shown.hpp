@@ -14,6 +14,7 @@ namespace study {
 struct ShownFactors {
   explicit ShownFactors(const Design& design);
 
+  /// Indices into scenes, n_stars and methods.
   struct Place {
     int scene = 0, n_star = 0, method = 0;
   };
@@ -28,15 +29,15 @@ struct ShownFactors {
 
 struct ShownTrial {
   int participant = 0;  ///< number of the participant, from 0
-  int first = 0;        ///< cell of the only or first stimulus
-  int second = -1;      ///< cell of the second interval, or -1
-  int position = 0;
-  int period = 0;  ///< run of successive trials with one scene and one n_*, from 0; stats::periods_of()
+  int first = 0;        ///< index in Design::cells of the only or first stimulus
+  int second = -1;      ///< index in Design::cells of the second stimulus of a pair, or -1
+  int position = 0;     ///< place in the order of the session's trials, from 0
+  int period = 0;       ///< run of successive trials with one scene and one n_*, from 0; stats::periods_of()
 };
 
-/// Trials of the blocks of kind stimulus for n participants. Participants take the slots of the order
-/// assignment in turn, and each has the plan that `vip-study run` makes with this seed. The plan of a
-/// participant does not depend on n.
+/// Trials of the blocks of kind stimulus for n participants. Participants take the slots (combinations of
+/// groups and orders over which the protocol balances participants) in turn, and each has the plan that
+/// `vip-study run` makes with this seed. The plan of a participant does not depend on n.
 std::vector<ShownTrial> planned_trials(const Protocol& protocol, std::uint64_t seed, int n);
 
 }  // namespace study

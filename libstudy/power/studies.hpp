@@ -38,18 +38,23 @@ Estimated quantile_of(std::span<const double> values, double share);
 /// Counts of one test over simulated studies of Task 1 or 2. All are whole numbers, so a sum depends neither
 /// on its order nor on the processes that counted.
 struct TestCount {
-  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< numbers of studies, see TestPoint
-  std::int64_t estimates = 0;                                         ///< number of studies with an estimate
+  /// Numbers of studies in which the test holds after Holm's correction, has p < alpha in the direction
+  /// claimed without correction, is significant in the other direction after Holm's correction, has no p.
+  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;
+  std::int64_t estimates = 0;       ///< number of studies with an estimate
   std::int64_t estimate_units = 0;  ///< sum of the estimates in units of 1e-9
-  int participants_least = 1 << 30,
-      participants_most = 0;  ///< smallest and largest number of participants with both answers in a study
+  /// Smallest and largest number in a study of participants whose answers the test uses; in Task 2, of
+  /// answers to the pair.
+  int participants_least = 1 << 30, participants_most = 0;
 
   void add(const TestCount& other);
   double mean_estimate() const;  ///< mean of the estimates; 0 without an estimate
 };
 
 struct HypothesisCount {
-  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;  ///< numbers of studies; see HypothesisPoint
+  /// Numbers of studies in which every test holds under the plan's rule, any test holds after Holm's
+  /// correction, any test with a false claim does, the paper's uncorrected rule supports the hypothesis.
+  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;
   std::vector<TestCount> tests;
 
   /// Adds counts of the same hypothesis over other studies.

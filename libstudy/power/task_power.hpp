@@ -19,11 +19,13 @@ struct TestPoint {
   Estimated against;      ///< share with significance in the other direction after Holm's correction
   Estimated refused;      ///< share of studies in which the test has no p
   /// Power of the uncorrected test by a formula, for normal differences (Task 1) or exactly (Task 2). Empty
-  /// if studies differ in the number of participants with both answers, for the mixed model, for levels of
-  /// effects and with interval bias.
+  /// if participants_least differs from participants_most, for the mixed model, for levels of effects and
+  /// with interval bias.
   std::optional<double> closed_form;
-  double mean_estimate = 0;  ///< mean over studies of the estimated difference, or share that chose a
-  /// Smallest and largest number of participants with both answers in a study.
+  /// Mean over studies of the estimated difference a - b, or of the share of answers that chose a.
+  double mean_estimate = 0;
+  /// Smallest and largest number in a study of participants whose answers the test uses; in Task 2, of
+  /// answers to the pair.
   int participants_least = 0, participants_most = 0;
 };
 
@@ -32,9 +34,10 @@ struct TestPower {
   double truth = 0;         ///< true difference a - b, or true preference for a
   bool claim_true = false;  ///< true if the test's claim is true in the world
   std::optional<double> margin;
-  std::vector<TestPoint> curve;    ///< one point for each of PowerRequest::n
-  std::optional<int> n_for_power;  ///< as HypothesisPower::n_for_power, but for TestPoint::holds; empty if
-                                   ///< the claim is false
+  std::vector<TestPoint> curve;  ///< one point for each of PowerRequest::n
+  /// The smallest requested n such that TestPoint::holds reaches the requested power at this n and every
+  /// larger one. Empty if no such n exists or if the claim is false.
+  std::optional<int> n_for_power;
 };
 
 struct HypothesisPoint {

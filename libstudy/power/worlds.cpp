@@ -29,8 +29,9 @@ using Qualities = std::array<double, 5>;  // one value for each method, in the o
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
 
-/// Scenario of Task 1. A method's mean realism is the middle of the scale plus its quality times unit_realism
-/// points. Its mean sickness is the middle of the scale minus its quality times unit_sickness points.
+/// Scenario of Task 1. A method's mean realism is the middle of the scale plus its entry of `quality` (0 for
+/// a method that methods_by_rank lacks) times unit_realism points. Its mean sickness is the middle of the
+/// scale minus that entry times unit_sickness points.
 Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypotheses,
                     const Qualities& quality, double unit_realism, double unit_sickness) {
   Scenario out{std::move(hypotheses), {}, {}, {}};
@@ -91,7 +92,7 @@ std::string possessive(const std::vector<std::string>& ids) {
   return out;
 }
 
-/// The differences of quality a - b of the methods that the claim compares.
+/// The differences of quality a - b, one for each method a and each method b that the claim compares.
 std::vector<double> differences(const stats::MethodClaim& claim, const Qualities& quality) {
   const auto of = [&](const std::string& method) {
     const int rank = rank_of(method);

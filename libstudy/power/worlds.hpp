@@ -17,7 +17,7 @@ struct Scenario {
 };
 
 struct World {
-  std::string id;     ///< "effect", "null", "margin" or "paper"
+  std::string id;     ///< "effect", "null", "margin" or "paper"; see PowerRequest::worlds
   std::string words;  ///< the world's assumptions in words
   std::vector<Scenario> scenarios;
 };

@@ -14,7 +14,7 @@ struct KeptPicture {
   double time_s = 0;  ///< time since frame 0
   std::string png;
   /// Masks of the fovea and of the most salient part, packed by to_bits(). Only runs of the reference setting
-  /// store masks, with the first picture of each pair.
+  /// store masks, and only with the first picture of each pair (two pictures 1/30 s apart); otherwise empty.
   std::string fovea = {}, salient = {};
 };
 
@@ -34,8 +34,11 @@ struct WaterSample {
 };
 
 struct FrameCost {
-  double solve_ms = 0;  ///< time of the solver, including the transfer of the picture to the saliency
-  std::optional<double> draw_ms;  ///< time of transfer and rendering; empty: no picture is drawn
+  /// Time of the solver. If a method that depends on pictures gets the last picture, the time includes
+  /// passing that picture to the solver.
+  double solve_ms = 0;
+  /// Time of passing the particles to OpenGL and of rendering them; empty: no picture is drawn.
+  std::optional<double> draw_ms;
   double all_ms() const { return solve_ms + draw_ms.value_or(0); }
 };
 
@@ -43,8 +46,8 @@ struct CellRun {
   /// State of the water every 1/30 s. The first sample is taken 1/30 s after frame 0.
   std::vector<WaterSample> samples;
   std::vector<FrameCost> frames;  ///< all frames except the first five, in which buffers grow
-  /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if SweepCell::kept
-  /// is empty.
+  /// Ten pairs of pictures a second; the pictures of a pair are 1/30 s apart. Empty if the cell names no
+  /// size of stored pictures (SweepCell::kept).
   std::vector<KeptPicture> pictures = {};
   double pixels_per_degree = 0;  ///< resolution of the pictures at their centre; 0 without pictures
   double particles_mean = 0, substeps_mean = 0;

@@ -12,13 +12,14 @@ namespace {
 
 sim::SolverSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
   auto out = sim::usual_setting(plan.scene, method, plan.n_star);
-  // The threshold beta is fixed at its value for tau = -6 frames/s, as in the paper's Table 2.
+  // Beta, the lowest probability with which temporal acceleration solves a particle, is fixed at its value
+  // for tau = -6 frames/s (frame rate minus the rate that just satisfies), as in the paper's Table 2.
   if (sim::traits_of(method).temporal) out[sim::SolverKnob::Beta] = stats::activation_floor({}, -6);
   return out;
 }
 
-/// Converts an entry of SolverKnobTraits::others to the knob's value: for Size the entry is a multiple of
-/// n_*.
+/// Converts an entry of SolverKnobTraits::others (values to try besides the usual one) to the knob's value:
+/// for Size the entry is a multiple of the plan's n_star.
 double value_of(const sim::SolverKnobTraits& traits, double value, const SweepPlan& plan) {
   return traits.knob == sim::SolverKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
 }

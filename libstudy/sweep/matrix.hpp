@@ -10,8 +10,8 @@ namespace study {
 
 struct SweepCell {
   sim::SolverSetting setting;
-  /// Start of the run. 1: the settled state. 2, 3, ...: the settled state, perturbed by one unit in the last
-  /// place.
+  /// Start of the run. 1: the settled state of the water. 2, 3, ...: the settled state with each coordinate
+  /// of each particle moved by one unit in the last place; the directions depend on the seed.
   int seed = 1;
   double seconds = 2;  ///< simulated time from frame 0
   /// Size of the pictures whose drawing is timed; a method that depends on the picture receives them. Empty:
@@ -35,8 +35,8 @@ struct SweepPlan {
   int seeds = 2;          ///< starts of each setting except the references; see SweepCell::seed
   std::string size = {};  ///< SweepCell::size of all cells
   std::string kept = {};  ///< SweepCell::kept of all cells
-  /// True: only the size n_star and, of the knobs, only the number of projections; no finer references, no
-  /// factorial.
+  /// True: the sweep varies only the method and the number of projections. It has no other size than n_star,
+  /// no finer references (the reference with one of its numbers doubled) and no factorial of knobs.
   bool quick = false;
 };
 
@@ -47,9 +47,9 @@ sim::SolverSetting reference_setting(const std::string& scene, std::int64_t n_st
 std::vector<sim::SolverSetting> finer_references(const sim::SolverSetting& reference);
 
 /// The cells in this order. First the reference with two seeds and the finer references. Then each method at
-/// each size. Then HiRes and Ours with one knob changed. Last a quarter of the factorial of size,
-/// projections, substeps and levels under Ours: each combination of size, projections and substeps once, each
-/// number of levels equally often. No cell occurs twice.
+/// each n_*. Then HiRes and Ours with one knob changed. Last a quarter of the factorial of n_*, projections,
+/// substeps and levels under Ours: each combination of n_*, projections and substeps once, each number of
+/// levels equally often. No cell occurs twice.
 std::vector<SweepCell> cells_of(const SweepPlan& plan);
 
 }  // namespace study

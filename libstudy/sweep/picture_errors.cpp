@@ -78,7 +78,10 @@ class Mean {
 
 double rms_pct(const Mean& squares) { return 100 * std::sqrt(squares.value()) / 255; }
 
-/// Differences of one run from the reference for each stored picture; NaN where a difference is not defined.
+/// Differences of one run from the reference for each stored picture. `square`, `fovea`, `salient`: mean
+/// squared difference over the whole picture and over the two masks. `structure`: 1 - SSIM. `change`: mean
+/// squared difference of the two runs' changes within the pair. `fovea`, `salient` and `structure` are NaN
+/// for the second picture of a pair, `change` for the first; `fovea` and `salient` also without such a mask.
 struct Trace {
   std::vector<double> square = {}, fovea = {}, salient = {}, structure = {}, change = {};
 };

@@ -11,15 +11,15 @@ namespace study {
 
 /// Errors of pictures in per cent; smaller is better; NaN without pictures. All but Flicker compare the first
 /// picture of each pair in CellRun::pictures with the reference's. Picture, Fovea, Salient, Ssim and Flip use
-/// the pictures before PictureScores::parting_s; Film and Flicker use the whole run. Fovea and Salient skip
-/// pictures whose mask has fewer than 100 pixels.
+/// the pictures before PictureScores::parting_s, from which on the reference's pictures are unpredictable;
+/// Film and Flicker use the whole run. Fovea and Salient skip pictures whose mask has fewer than 100 pixels.
 enum class PictureError {
   Picture,  ///< root mean square difference over 255; PSNR in dB is -20 log10 of this ratio
   Fovea,    ///< root mean square difference over 255 within the fovea
   Salient,  ///< root mean square difference over 255 in the reference's most salient part outside the fovea
-  Ssim,     ///< mean of 1 - SSIM
+  Ssim,     ///< mean of 1 - SSIM over the pictures before parting_s
   Flip,     ///< mean of LDR-FLIP
-  Film,     ///< mean of 1 - SSIM
+  Film,     ///< mean of 1 - SSIM over the whole run
   /// Root mean square difference over 255 between the change of the run's picture within a pair (1/30 s) and
   /// the change of the reference's picture.
   Flicker

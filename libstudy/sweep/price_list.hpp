@@ -68,8 +68,9 @@ struct SettingResult {
   /// Time of a frame in ms, over the frames of all seeds.
   double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;
   double draw_ms_mean = 0;  ///< mean time of drawing, contained in ms_mean; NaN without pictures
-  /// Tau of the paper's Eq. 11 in frames/s, with the paper's a and b. Its frame intervals are the times of
-  /// the frames, but no shorter than the period of a display at the setting's frame rate.
+  /// Tau of the paper's Eq. 11, mu - a exp(b delta), in frames/s, with the mean mu and the standard deviation
+  /// delta of the frame rate and the paper's a and b. Frame intervals are the times of the frames, but no
+  /// shorter than the period of a display at the setting's frame rate.
   double tau = 0;
   std::array<Spread, sweep_error_count> errors = {};
 };
@@ -102,7 +103,8 @@ struct PriceList {
   /// Errors of the reference from a start perturbed by one unit in the last place (0 for Density). Smaller
   /// errors are meaningless.
   SweepErrors floor{};
-  /// Results of those of finer_references() that were run.
+  /// Results of the finer references that were run: the reference with twice the projections, substeps or
+  /// particles.
   std::vector<SettingResult> finer = {};
   std::vector<SettingResult> settings = {};
   std::vector<Price> prices = {};
@@ -110,7 +112,9 @@ struct PriceList {
   /// differ from it by less than a third of the smallest error above the floor in `settings`.
   std::array<bool, sweep_error_count> converged{};
   std::vector<ObservedOrder> orders = {};  ///< for particle spacing and time step, as far as the runs exist
-  double parting_s = 0;                    ///< see PictureScores::parting_s
+  /// Time in s from which the reference's pictures are unpredictable (PictureScores::parting_s). Infinity: no
+  /// such time; NaN: no pictures.
+  double parting_s = 0;
   bool pictures() const { return !std::isnan(parting_s); }
 };
 

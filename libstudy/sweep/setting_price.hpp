@@ -38,9 +38,9 @@ struct SettingPrices {
   std::vector<SettingPrice> found;  ///< one entry for each table that has a row of the setting
   std::string why_none;             ///< the reason if `found` is empty
 };
-/// Finds the rows of exactly this setting in the tables of this scene file; the setting's `scene` is ignored.
-/// NaN as a knob's value means that the knob follows the frame rate from frame to frame. No row has such a
-/// knob.
+/// Finds the rows of exactly this setting in the tables of the scene file with this SHA-256; the setting's
+/// `scene` is ignored. NaN as a knob's value means that the knob follows the frame rate from frame to frame.
+/// No row has such a knob, so nothing is found then.
 SettingPrices prices_of(const SweepTables& tables, sim::SolverSetting setting,
                         const std::string& scene_sha256);
 

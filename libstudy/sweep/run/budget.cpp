@@ -96,7 +96,7 @@ std::vector<SettingResult> candidates(const PriceList& list, const BudgetRequest
     if (requested(one.setting, request)) out.push_back(one);
   if (out.empty()) {
     throw base::Error("--of-method, --of-n-star, --of-rate", "match no setting of the sweep",
-                      "give values that --csv lists, or sweep them (--n-star)");
+                      "give values that --csv lists, or sweep another n_* with --n-star");
   }
   std::erase_if(out, [&](const auto& one) { return std::isnan(one.errors[e].mean); });
   if (out.empty()) {

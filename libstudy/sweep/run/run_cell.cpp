@@ -38,8 +38,8 @@ class PictureKeeper {
 
   double pixels_per_degree() const { return std::numbers::pi / 180 / sim::pixel_rays(eye_.view()).scale_y; }
   /// Returns a picture of frame number `frame` of the run. With `masks`, adds the masks of the fovea around
-  /// the gaze point (half angle of the preset Tuned) and of the most salient part outside it. Computing masks
-  /// reorders the particles.
+  /// the gaze point (with the fovea's half angle in the solver's preset Tuned) and of the most salient part
+  /// outside it. Computing masks reorders the particles.
   KeptPicture keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks);
 
  private:
