@@ -43,7 +43,8 @@ std::string missing_items(const std::vector<Question>& asked);
 bool is_sickness(const Question& question);
 
 /// The scale questions, except those on sickness, of a study that varies the frame rate and shows no pairs;
-/// empty for any other study. A pilot fits one curve mu = a exp(b delta) to the answers to each question.
+/// empty for any other study. A pilot fits one curve mu = a exp(b delta) to the answers to each question: the
+/// mean frame rate mu that is just satisfactory at a standard deviation delta of the frame rate.
 std::vector<Question> curve_questions(const Protocol& protocol);
 
 }  // namespace study

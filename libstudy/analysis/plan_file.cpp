@@ -75,7 +75,7 @@ void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   if (root.is_text("directional")) {
     const std::string once = as_once_frozen(plan);
     if (once.empty() || root.string("directional") != once)
-      root.fail("directional", "is '" + root.string("directional") + "'",
+      root.fail("directional", "is the text '" + root.string("directional") + "', which names no rule",
                 "use true or false, without quotes" + (once.empty() ? "" : ", or \"" + once + "\""));
     plan.directional = stats::Directional::Once;
   } else {

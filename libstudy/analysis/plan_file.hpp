@@ -26,8 +26,9 @@ struct PlanInForce {
 /// [[hypothesis]] must name its factors, levels and questions; null: these names are not checked.
 PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protocol = nullptr);
 
-/// timing_rule_name() returns a rule's name: "none", "fail" or "degraded". timing_rule_of() returns the rule
-/// of a name, and throws base::Error for any other name.
+/// A timing rule says from which verdict on the timing of its showing on a trial is excluded.
+/// timing_rule_name() returns its name: "none" (no verdict excludes), "fail" or "degraded". timing_rule_of()
+/// returns the rule of a name, and throws base::Error for any other name.
 const char* timing_rule_name(stats::TimingRule rule);
 stats::TimingRule timing_rule_of(const std::string& name);
 

@@ -32,7 +32,8 @@ std::optional<int> positive_score(const Question& question, std::optional<int> d
 /// True if the two conditions of the hypothesis are seen by different people.
 bool compares_groups(const Design& design, const stats::DeclaredHypothesis& hypothesis);
 
-/// Indices of the cells that have these levels. Cells of the standard are left out.
+/// Indices into Design::cells of the cells that have these levels. Cells of the standard, with which pairs
+/// compare the other cells, are left out.
 std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesis::Levels& levels);
 
 /// Reads those of the tables [[hypothesis]] that lack the key `task`; read_method_claims() reads the others.

@@ -48,9 +48,11 @@ double level_of(const TaskSelection& selection, const Question& question);
 bool has_answers(const TaskSession& session);
 /// True if an observer model answered any page of the session.
 bool is_simulated(const TaskSession& session);
+/// True if a session of the protocol that is not marked as test data has answers.
 bool has_real_answers(const TaskProtocol& protocol);
 
-/// A protocol that is not analysed: it has no real answers, while another protocol of the same task has some.
+/// A protocol that is not analysed: it has no real answers (see has_real_answers()), while another protocol
+/// of the same task has some.
 struct SetAside {
   std::string name;  ///< "name 1.0, SHA-256 0123456789ab": two protocols may have the same name and version
   int sessions = 0;
@@ -73,7 +75,8 @@ bool is_main_question(const TaskProtocol& protocol, const Question& question);
 
 /// One entry for each protocol that matches the selection and each of its main questions. A selected question
 /// replaces the main questions; it must be one of them unless the design is TaskKind::Own. Protocols without
-/// real answers are set aside if another match has some. Refused with the reason if nothing matches.
+/// answers other than test data are set aside if another match has some. Refused with the reason if nothing
+/// matches.
 stats::Result<std::vector<ChosenTask>> choose_tasks(const TaskStudy& study, const TaskSelection& selection);
 
 /// The protocol and question that match the selection. Refused with the reason if none or several match,

@@ -24,14 +24,14 @@ struct TaskFlow {
   int no_answer = 0;  ///< participants without an answer for the analysis even before exclusions; practice
                       ///< and repeats do not count
   int withdrawn = 0;  ///< participants who withdrew, counted over all protocols of the database
-  int test_left_out = 0;       ///< sessions of test data, left out because real data exist
-  int simulated_left_out = 0;  ///< sessions of observer models, left out because a person answered
-  int protocols_left_out = 0;  ///< sessions of the protocols in TaskData::set_aside
-  int excluded_visits = 0;
+  int test_left_out = 0;          ///< sessions of test data, left out because real data exist
+  int simulated_left_out = 0;     ///< sessions of observer models, left out because a person answered
+  int protocols_left_out = 0;     ///< sessions of the protocols in TaskData::set_aside
+  int excluded_visits = 0;        ///< visits (sessions) that a rule excludes as a whole
   int excluded_participants = 0;  ///< participants who answered, but whose answers are all excluded
   int analysed = 0;               ///< participants with an analysed answer
   int trials_planned = 0, trials_answered = 0, trials_excluded = 0, trials_analysed = 0;
-  int practice = 0, repeat = 0;
+  int practice = 0, repeat = 0;  ///< trials for practice and repeated trials; not in the four counts above
 };
 
 /// A showing (one presentation of a stimulus) that was played in a trial other than practice.
@@ -56,7 +56,7 @@ struct AnsweredTrial {
 struct DoubtfulTime {
   std::string participant, station;
   std::string told_utc;        ///< time of the answer in UTC, by the station's clock
-  std::string not_before_utc;  ///< earliest possible time of the answer; see TaskSession::not_before_utc
+  std::string not_before_utc;  ///< earliest possible time of the answer, by the rows written before it
   bool impossible = false;  ///< true if the answer's time is before ViP-Lab existed: the clock was then wrong
                             ///< at this answer and not at the earlier rows
 };
@@ -76,7 +76,7 @@ struct TaskData {
   TaskKind task = TaskKind::Task1;
   /// The protocol. Its sessions lack those that flow.test_left_out and flow.simulated_left_out count.
   TaskProtocol protocol;
-  std::vector<SetAside> set_aside;
+  std::vector<SetAside> set_aside;        ///< protocols not analysed, for lack of real answers
   bool test_data = false;                 ///< true if test data are analysed, since there are no real data
   std::vector<std::string> participants;  ///< codes of the participants with an analysed answer
   std::vector<std::string> scenes;        ///< scenes of the protocol by scene_name(), such as "single_dam"

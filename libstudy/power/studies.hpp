@@ -43,8 +43,8 @@ struct TestCount {
   std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;
   std::int64_t estimates = 0;       ///< number of studies with an estimate
   std::int64_t estimate_units = 0;  ///< sum of the estimates in units of 1e-9
-  /// Smallest and largest number in a study of participants whose answers the test uses; in Task 2, of
-  /// answers to the pair.
+  /// Smallest and largest number in a study of participants whose answers the test uses; in tests of a
+  /// preference between two methods, of answers to the pair.
   int participants_least = 1 << 30, participants_most = 0;
 
   void add(const TestCount& other);

@@ -24,8 +24,8 @@ struct TestPoint {
   std::optional<double> closed_form;
   /// Mean over studies of the estimated difference a - b, or of the share of answers that chose a.
   double mean_estimate = 0;
-  /// Smallest and largest number in a study of participants whose answers the test uses; in Task 2, of
-  /// answers to the pair.
+  /// Smallest and largest number in a study of participants whose answers the test uses; in tests of a
+  /// preference between two methods, of answers to the pair.
   int participants_least = 0, participants_most = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The pilot's estimates as parts of fit.json.
+/// The pilot's estimates of the curve mu(delta) = a exp(b delta) over mean mu and standard deviation delta of
+/// the frame rate, as parts of fit.json.
 
 #include "libstudy/analysis/ptpe/pilot_fit.hpp"
 #include "stats/base/json.hpp"

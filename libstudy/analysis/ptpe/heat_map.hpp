@@ -1,6 +1,6 @@
 #pragma once
-/// The pilot's figure (paper Fig. 6) shows mean scores over (delta, mu), contours at the fit's levels and the
-/// fitted curve.
+/// The pilot's figure (paper Fig. 6) shows mean scores over (delta, mu), that is, standard deviation and mean
+/// of the frame rate; contours at the fit's levels; and the fitted curve.
 
 #include <array>
 #include <string>

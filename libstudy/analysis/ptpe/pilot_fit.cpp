@@ -21,9 +21,10 @@ std::string count_words(int n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-/// Adds a flag for each kind of line (of constant delta) on which the scores do not cross the level exactly
-/// once, and one if they cross it on fewer than half of the lines. `fitted`: true if a curve was fitted to
-/// the contour.
+/// Adds a flag with the number of lines (of constant delta) for each of these cases that occurs: the scores
+/// never reach the level; they exceed it from the smallest mean frame rate on; they meet it at a setting
+/// without crossing it; they cross it more than once. Adds a flag also if they cross the level on fewer than
+/// half of the lines. `fitted`: true if a curve was fitted to the contour.
 void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bool fitted) {
   const std::string inner = fitted ? "; the contour's curve goes by the others" : "";
   const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };

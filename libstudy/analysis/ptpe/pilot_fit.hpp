@@ -59,7 +59,7 @@ struct PilotFit {
   double level = 4;
   stats::BootstrapOptions bootstrap;
   int participants = 0;
-  std::size_t settings = 0;
+  std::size_t settings = 0;                 ///< number of settings of the frame rate with a rating
   stats::ScoreGrid grid;                    ///< mean scores, by the harmonic mean of the realised frame rate
   std::vector<std::vector<double>> scores;  ///< for each node of the grid, the mean score of each participant
   std::vector<double> deltas;  ///< nominal standard deviations of the frame rate in frames/s, ascending
@@ -69,8 +69,12 @@ struct PilotFit {
   stats::PilotRules rules;    ///< the plan's rules for reverse coders, drift and lapses; `data` holds the
                               ///< ratings after these rules
   std::vector<FitFlag> flags;
-  std::string reason;                     ///< the reason why the fit cannot be used; empty if it can be used
-  std::vector<stats::PilotDoubt> doubts;  ///< reasons why a solver must not use the fit
+  /// The reason why there is no usable fit, for example no estimate or a level outside the scale; empty if
+  /// there is one.
+  std::string reason;
+  /// Reasons why a solver must not use the fit although `reason` is empty, for example that the scores do not
+  /// rise with the frame rate.
+  std::vector<stats::PilotDoubt> doubts;
 
   bool ok() const { return reason.empty(); }
   bool level_within_scale() const;

@@ -9,7 +9,8 @@
 
 namespace study {
 
-/// The entry "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text. It
+/// The entry "raters": reverse coders (participants who rate higher frame rates lower), drift of the scores
+/// over the session, and lapses to the lowest score, each with its test, the plan's rule and a text. It
 /// identifies no participant, since a withdrawal cannot erase data from a file that was already written.
 base::Json raters_json(const PilotFit& fit);
 /// Codes of the reverse coders with their slopes. They are printed on the console and never written to a

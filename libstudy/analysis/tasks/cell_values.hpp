@@ -27,8 +27,8 @@ struct CellAnswer {
 
 /// The analysed answers to the question, in the order of participants, visits and trials. The value is that
 /// of value_of(): the score; 1 or 0 for OutcomeValue::Share; for a choice between the intervals 1 if the
-/// comparison (without a standard: cell `cell`) was chosen, else 0. `positive`: see
-/// DeclaredHypothesis::positive.
+/// comparison (without a standard: cell `cell`) was chosen, else 0. `positive`: the score whose share is the
+/// outcome; empty: the higher of two scores.
 std::vector<CellAnswer> cell_answers(const TaskData& data, const Question& question,
                                      std::optional<int> positive);
 
@@ -49,7 +49,7 @@ struct PersonTrack {
 /// ProcedureKind::Ptpe.
 std::vector<PersonTrack> person_tracks(const TaskData& data);
 
-/// The thresholds as values of the first cells of their tracks.
+/// The thresholds as values of the cells that stand for their tracks (DesignTrack::cell).
 std::vector<CellAnswer> threshold_values(const TaskData& data, std::span<const PersonTrack> tracks);
 
 /// For each participant, the index in cell_groups() of the group whose cells the participant saw; -1: none.
@@ -67,7 +67,8 @@ struct ConditionValues {
 ConditionValues condition_values(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
                                  std::span<const CellAnswer> answers);
 
-/// The single answers of the two conditions, with the levels of the other factors as terms.
+/// The single answers of the two conditions, for a regression. Its further terms are indicators of the levels
+/// of the factors that the conditions do not name.
 stats::AnswerRows condition_rows(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
                                  std::span<const CellAnswer> answers);
 

@@ -12,10 +12,10 @@ namespace study {
 
 /// CSV text by RFC 4180 with one line for each object of `list`. A nested object's fields are named
 /// outer_inner, an interval's ends name_low and name_high. A list of texts is joined by spaces; other lists
-/// are left out. Null is an empty field. Numbers are not rounded. Texts except "-Inf" pass
-/// study::formula_guarded(). There is a column for each field that any line has, in the order of first
-/// appearance. A null gets no column if another line has an interval of the same name. An empty list has the
-/// columns `if_empty`.
+/// are left out. Null is an empty field. Numbers are not rounded. A text other than "-Inf" that a spreadsheet
+/// would read as a formula gets an apostrophe in front (formula_guarded()). There is a column for each field
+/// that any line has, in the order of first appearance. A null gets no column if another line has an interval
+/// of the same name. An empty list has the columns `if_empty`.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
 /// The folders that write_csv_folder() fills: `folder`, and within it "apart_1", "apart_2" and so on for the

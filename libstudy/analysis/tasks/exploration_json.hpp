@@ -26,8 +26,8 @@ Json response_times_json(const TaskData& data);
 Json reliability_json(const TaskData& data, const std::vector<stats::ScoreTable>& tables,
                       const stats::AnalysisPlan& plan);
 
-/// Mean and SD of one score over single reports, by n_*, scene and method. The confidence interval is that of
-/// the mean over participants' means.
+/// Mean and SD of one score over single reports (a participant's answers about one trial), by n_*, scene and
+/// method. The confidence interval is that of the mean over participants' means.
 Json score_by_scene_json(const TaskData& data, const stats::ScoreTable& table, double confidence);
 
 /// Tests if the difference of two methods depends on n_*. One entry for each score, pair of n_* and pair of

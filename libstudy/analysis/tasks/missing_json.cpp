@@ -43,8 +43,9 @@ Json answers_json(const stats::MissingAnswers& one) {
           {"within_scale", one.within_scale()}};
 }
 
-/// Tipping point of a comparison's decision, by the paired t test, or by the exact sign test if all
-/// differences are equal.
+/// Tipping point of a comparison: by how many points missing answers must be worse than expected before the
+/// decision changes. The decision is by the paired t test, or by the exact sign test if all differences are
+/// equal.
 Json pair_tipping_json(const ScoreTable& table, const stats::MethodComparison& one, double alpha) {
   if (one.unanimous)
     return json_result(stats::no_tipping_point(table, one.n_star, one.a, one.b, *one.p() < alpha),

@@ -1,6 +1,7 @@
 #pragma once
 /// The parts of Task 1's results about missing answers (docs/report.md): the mixed model of all answers, the
-/// number of participants in each comparison, and tipping points.
+/// number of participants in each comparison, and tipping points. A tipping point is by how many points
+/// missing answers must be worse than expected before a comparison's decision changes.
 
 #include "libstudy/analysis/json_parts.hpp"
 #include "libstudy/analysis/task_data.hpp"

@@ -211,7 +211,8 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
   return json;
 }
 
-/// Name of the document at this index (from 0) of the list "apart": "apart 1" for index 0.
+/// Name of the document at this index (from 0) of the list "apart", which holds the analyses beyond the first
+/// of each task: "apart 1" for index 0.
 std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
 
 /// Number of simulated participants with answers, analysed or not. A participant of several protocols counts
@@ -224,7 +225,8 @@ std::size_t simulated_people(const TaskStudy& study) {
   return people.size();
 }
 
-/// For the SHA-256 of each analysed protocol, the sections that analyse it: a task's name or apart_name().
+/// For the SHA-256 of each analysed protocol, the sections that analyse it: the task's name if the analysis
+/// is in `first`, such as "apart 1" (apart_name()) if it is in `others`.
 std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
                                                     const std::vector<TaskPart>& others) {
   std::multimap<std::string, std::string> out;

@@ -1,6 +1,6 @@
 #pragma once
 /// Tests the hypotheses again under other rules, to show if a verdict depends on exclusions, on sessions
-/// without tracked gaze, or on pooling.
+/// without tracked gaze, or on averaging the several answers of one participant.
 
 #include <vector>
 

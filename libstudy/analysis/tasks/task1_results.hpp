@@ -27,12 +27,12 @@ struct Task1Results {
 };
 
 /// One table for each of realism, cybersickness, and cybersickness without unrealism. A score is the mean of
-/// its items; a report that lacks an item has no score. A score is left out if the trials do not ask for one
-/// of its items.
+/// its items; a report (the answers about one trial) that lacks an item has no score. A score is left out if
+/// the trials do not ask for one of its items.
 std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// One value for each report and each planned trial without a report, before scenes are averaged: the sum of
-/// the answers to `items`; NaN if one is unanswered.
+/// One value for each report (the answers about one trial) and each planned trial without a report, before
+/// scenes are averaged: the sum of the answers to `items`; NaN if one is unanswered.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
 /// Analyses each score whose items are asked, and tests the hypotheses whose methods the protocol shows.
