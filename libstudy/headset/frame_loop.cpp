@@ -204,8 +204,8 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   {
     const std::lock_guard held(mutex_);
     facts_.rate = rate;
-    // Asked anew in each slot, because the meter subtracts the steps that a change of the rate took off the
-    // grid, and because a new session has a new meter.
+    // Computed anew in each slot: off_grid() also counts steps during a change of the rate and subtracts them
+    // when it detects the change, and a new session has a new meter.
     facts_.trusted = session_->times_convert() && meter.repeated() == 0 && meter.off_grid() == 0;
     facts_.last = slot;
     facts_.views = record.views;

@@ -50,7 +50,7 @@ struct LoopFacts {
   /// predicted times of this session was positive and within a tenth of a period of a whole number of
   /// periods. Steps during a change of the refresh rate do not count once the change is detected.
   bool trusted = false;
-  int world = 0;  ///< as HeadsetRecord::world
+  int world = 0;  ///< changes whenever the poses' origin may have moved; as HeadsetRecord::world
   HeadsetSlot last;
   EyeViews views;  ///< predicted poses of the eyes in the last slot
 };

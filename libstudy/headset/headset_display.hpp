@@ -29,8 +29,9 @@ class HeadsetDisplay final : public Display {
   explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {}, const HeadsetRules& rules = {});
 
   std::string description() const override;
-  /// Grade C; grade D if the runtime's times do not convert to the session's clock, repeat, or are no
-  /// multiples of the period.
+  /// Grade C (onset times are predictions of the compositor). Grade D (only times of submission are known) if
+  /// the runtime's predicted times do not convert to the session's clock, do not increase from slot to slot,
+  /// or have steps that are no multiples of the period.
   TimingGrade grade() const override;
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;

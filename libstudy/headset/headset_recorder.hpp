@@ -52,9 +52,10 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   std::vector<GazeSample> gaze_;
   std::vector<SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  /// last reported sample time; largest lag of a sample behind its slot
-  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;
-  std::int64_t last_ns_ = 0;  ///< time of the last sample
+  std::int64_t last_reported_ns_ = 0;  ///< newest sample time that the runtime reported
+  std::int64_t lag_ns_ = 0;            ///< largest lag of a reported sample time behind its slot's time
+  /// Time of the newest sample that was stored, whether the runtime reported it or it was derived from the slot.
+  std::int64_t last_ns_ = 0;
 };
 
 /// The gaze sample of a slot; its ray is in the head's frame. Not valid if the orientation of the head is not

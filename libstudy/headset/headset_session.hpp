@@ -78,8 +78,8 @@ struct HeadsetChoice {
   double patience_s = 10;  ///< longest wait for a frame, an image or a new session, s; then base::Error
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< refresh rate to request; see request_rate()
-  /// If the runtime's times do not convert to the session's clock, the first guessed time is not before
-  /// earliest_ns.
+  /// If the runtime's times do not convert to the session's clock, the program guesses the offset between the
+  /// clocks such that the first converted time is the current time, but not before earliest_ns.
   std::int64_t earliest_ns = 0;
 };
 

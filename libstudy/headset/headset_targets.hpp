@@ -27,7 +27,7 @@ class HeadsetTargets final : public GazeTargets {
 
   HeadsetDisplay& display_;
   HeadsetPose middle_;  ///< the head's pose at begin(), or after the world's origin moved
-  int world_ = 0;       ///< HeadsetRecord::world of middle_
+  int world_ = 0;       ///< HeadsetRecord::world at middle_; changes when the world's origin may have moved
 };
 
 /// The page of a target that faces the head, at angles to the right and up from straight ahead of the head.

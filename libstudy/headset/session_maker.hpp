@@ -28,12 +28,14 @@ class SessionMaker {
   /// Largest number of sessions. A runtime that loses this many is likely to lose the next one as well.
   static constexpr int most_sessions = 3;
 
-  /// gl: as in HeadsetSession. The constructor makes no session.
+  /// gl: the context of all sessions; must be current on the thread that calls make() and outlive the
+  /// sessions. The constructor makes no session.
   SessionMaker(const sim::GlContext& gl, const HeadsetChoice& choice) : gl_(gl), choice_(choice) {}
 
   /// The first call makes the first session, with one attempt. Later calls make a new session; destroy the
   /// lost one before. They retry for HeadsetChoice::patience_s, because the headset may be absent only for a
-  /// moment. base::Error if no session can be made, or after most_sessions. earliest_ns: see HeadsetChoice.
+  /// moment. base::Error if no session can be made, or after most_sessions. earliest_ns: lower bound of the
+  /// session's first time, if the runtime's times do not convert to the session's clock.
   std::unique_ptr<HeadsetSession> make(std::int64_t earliest_ns = 0);
 
  private:

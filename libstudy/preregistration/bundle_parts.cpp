@@ -58,7 +58,7 @@ int widest_scale(const Protocol& protocol) {
   return out;
 }
 
-/// For each key of the plan that has no effect in any of the protocols, the reason.
+/// For each key of the plan file that has no effect in any of the protocols, the reason why it has none.
 std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& protocols,
                                               const stats::AnalysisPlan& plan) {
   const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
@@ -91,9 +91,10 @@ struct ByOrder {
   std::string text;
 };
 
-/// The bundle counts as older if it is older than the answer's time. If the answer's time is impossible, the
-/// session's clock was wrong, and a bundle older than the rows before the answer counts as older too. If the
-/// time is possible, either this time or that of the rows is wrong, so the rows do not count.
+/// The bundle counts as older if it is older than the answer's time. If the answer's time is impossible
+/// (before ViP-Lab existed), the session's clock was wrong, and a bundle older than the rows that were
+/// written before the answer counts as older too. If the time is possible, either this time or that of the
+/// rows is wrong, so the times of the rows do not count.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

@@ -29,9 +29,10 @@ std::string bundle_text(const std::vector<Protocol>& protocols, const stats::Ana
                         const base::Json& hypotheses, const std::vector<std::string>& untested,
                         bool with_power, const std::string& frozen_utc);
 
-/// An entry of "times": "frozen_before" is true if the bundle is older than the first answer to a protocol,
-/// false if it is not, and null if this is unknown. Times of answers decide, and for doubtful times the order
-/// of the database's rows. `used`: the protocol's entry in study.protocols of the results.
+/// An entry of the list "times" of a comparison: "frozen_before" is true if the bundle is older than the
+/// first answer to a protocol, false if it is not, and null if this is unknown. The times of answers decide.
+/// If such a time is impossible (before ViP-Lab existed), the times of the database's rows before the answer
+/// count too. `used`: the protocol's entry in study.protocols of the results.
 base::Json time_json(const std::string& frozen_utc, const base::Json& used);
 
 }  // namespace study::report

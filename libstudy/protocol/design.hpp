@@ -76,7 +76,9 @@ enum class TrialOrder {
 };
 
 enum class Assignment {
-  /// groups and rows of the order's square are assigned by quotas over all participants except dropouts
+  /// groups and rows of the order's square (Latin, Williams) are assigned to participants such that all are
+  /// used
+  /// equally often; dropouts do not count
   Balanced,
   PaperRandom  ///< groups and orders are drawn at random for each participant, as in the paper
 };

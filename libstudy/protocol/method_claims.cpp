@@ -143,7 +143,8 @@ MethodClaims read_shipped() {
   const auto tables = root.tables("hypothesis");
   auto out = read_method_claims(tables);
   if (out.empty() || out.size() != tables.size())
-    root.fail("", "lists hypotheses without task, or none", "write task in each [[hypothesis]]");
+    root.fail("", "lists a hypothesis without the key task, or no hypothesis",
+              "write one [[hypothesis]] or more, each with task");
   root.finish();
   return out;
 }

@@ -58,7 +58,7 @@ enum class BlockKind {
 
 /// The word for `kind` in protocol files: "instructions", "screening", ...
 std::string block_kind_name(BlockKind kind);
-/// True for the kinds whose units are trials: Practice, Stimulus and Repeat.
+/// True for the kinds of blocks that consist of trials: Practice, Stimulus and Repeat.
 bool has_trials(BlockKind kind);
 
 /// One step of a trial. In the file: "black 3", "stimulus", "stimulus first", "stimulus second", "ask realism
@@ -103,7 +103,7 @@ struct Block {
   double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
   int break_every = 0;           ///< Stimulus, format 3: trials from one break to the next; 0 = no break
   double break_s = 0;            ///< shortest duration of these breaks, s
-  Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: the policy of `like`
+  Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: that of the block `like`
 };
 
 struct Protocol {

@@ -129,9 +129,10 @@ std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
   });
 }
 
-// Largest number of sequences of groups; the assignment lists all of them.
+// Largest number of sequences of groups (the groups that one participant sees, in order); the assignment
+// lists all of them.
 constexpr double most_sequences = 50000;
-constexpr double most_places = 1e7;  // largest number of slots; see check_places()
+constexpr double most_places = 1e7;  // largest number of different sessions; see check_places()
 
 TimingSource read_timing_source(const base::TomlTable& table) {
   const std::string word = table.choice("timing", {"settings", "native", "equal", "table2"});
@@ -154,8 +155,9 @@ std::size_t distinct_levels(const Design& design, Level level) {
   return levels.size();
 }
 
-/// Upper bound on the number of sequences of groups. In format 2 it counts all sequences with different
-/// scenes, also those that spread n_* unevenly. In format 3 a sequence is one group.
+/// Upper bound on the number of sequences of groups (the groups that one participant sees, in order). In
+/// format 2 it counts all sequences with different scenes, also those that spread n_* unevenly. In format 3 a
+/// sequence is one group.
 double sequences_at_most(const Design& design) {
   if (!design.factors.empty()) return static_cast<double>(cell_groups(design).size());
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });

@@ -63,8 +63,9 @@ struct Rendered {
   std::string contents, body;
 };
 
-/// Renders those sections for which the results have content. `prefix` and `name` distinguish the ids and
-/// headings of a document in "apart".
+/// Renders those sections for which the results have content. `prefix` (of ids) and `name` (in headings)
+/// distinguish a document of the list "apart" (further analyses) from the main document, for which both are
+/// empty.
 Rendered rendered(const Field& results, const std::string& prefix, const std::string& name) {
   Rendered out;
   for (const Section& part : sections) {
@@ -79,8 +80,8 @@ Rendered rendered(const Field& results, const std::string& prefix, const std::st
   return out;
 }
 
-/// Name of a document in "apart": "apart 1, Task 1, task1 1.1" or "apart 1, Pilot, ptpe_pilot_lab 1.0,
-/// question smoothness".
+/// Name of a document of the list "apart", which holds further analyses: "apart 1, Task 1, task1 1.1" or
+/// "apart 1, Pilot, ptpe_pilot_lab 1.0, question smoothness".
 std::string document_name(const Field& results) {
   const Field protocol = results["study"]["protocols"][0];
   std::string out = words(results["section"]) + ", " + words(protocol["title"]) + ", " +

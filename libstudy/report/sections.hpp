@@ -17,7 +17,8 @@ struct Part {
 inline constexpr std::array<Part, 4> all_parts{
     {{"pilot", "Pilot"}, {"task1", "Task 1"}, {"task2", "Task 2"}, {"own", "Own design"}}};
 
-/// The main results document, followed by the documents in "apart".
+/// The main results document, followed by the documents of its list "apart": the analyses beyond the first of
+/// each task.
 std::vector<Field> documents(const Field& root);
 
 /// True if a task ("task1", "task2", "pilot") was preregistered: a bundle was given, it is intact, it holds
@@ -38,7 +39,8 @@ std::string descriptives_section(const Field& root);
 std::string costs_section(const Field& root);
 std::string pilot_section(const Field& root);
 std::string task1_section(const Field& root);
-/// Part of Task 1's section: number of participants in comparisons, the mixed model, tipping points.
+/// Part of Task 1's section on missing answers: number of participants in each comparison, the mixed model,
+/// and tipping points (by how many points missing answers must be worse before a decision changes).
 std::string missing_answers(const Field& root);
 std::string task2_section(const Field& root);
 /// Part of a task's section if effects are a factor: a note that each "method" is a method with a level of

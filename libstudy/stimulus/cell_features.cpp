@@ -131,7 +131,8 @@ void CellFeatures::measure(const Protocol& protocol) {
 PictureFeatures CellFeatures::of(const StimulusSpec& stimulus) {
   const auto found = known_.find(stimulus_words(stimulus));
   if (found == known_.end())
-    throw base::Error(stimulus_words(stimulus), "was not measured", "measure the protocol's cells first");
+    throw base::Error(stimulus_words(stimulus), "was not measured",
+                      "call CellFeatures::measure() with its protocol first");
   return found->second;
 }
 

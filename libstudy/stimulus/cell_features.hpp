@@ -1,5 +1,5 @@
 #pragma once
-/// Features of a protocol's cells, measured on their pictures and cached.
+/// Features of the pictures of a protocol's cells (granularity and flicker), measured and cached.
 
 #include <filesystem>
 #include <functional>
@@ -12,9 +12,10 @@
 namespace study {
 
 /// Runs each stimulus live for 240 content steps from start_frame and draws it at 640 x 360 px. Around every
-/// 30th step it measures three successive pictures; the features are the means. The gaze is at the mean
-/// position of the visible fluid. Results are cached in `folder`, one file per stimulus, start_frame, content
-/// step, tau and program version. Needs a GL context if a stimulus is not cached.
+/// 30th step it measures granularity and flicker on three successive pictures; the features are the means.
+/// The gaze is at the mean position of the visible fluid. Results are cached in `folder`, one file per
+/// stimulus, start_frame, content step, tau and program version. Needs a GL context if a stimulus is not
+/// cached.
 class CellFeatures final : public FeatureSource {
  public:
   /// choice_of: returns the live stimulus of a cell.

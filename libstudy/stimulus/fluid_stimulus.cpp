@@ -136,7 +136,8 @@ void BakedPictures::draw(const Canvas& canvas) {
     throw base::Error(description(), "is one picture, which would look flat in a headset",
                       "show a bake of particles in a headset");
   }
-  if (!picture_) throw std::logic_error("BakedPictures: draw before prepare");
+  if (!picture_)
+    throw std::logic_error("BakedPictures::draw(): no picture is prepared; call prepare() first");
   const int width = bake_->header().picture_width_px, height = bake_->header().picture_height_px;
   if (!texture_) {
     glCreateTextures(GL_TEXTURE_2D, 1, &texture_);

@@ -11,8 +11,8 @@
 
 namespace study {
 
-/// One stimulus of a protocol. Cells that differ only in frame rate share one stimulus, unless its tau
-/// depends on the frame rate.
+/// One stimulus of a protocol. Cells that differ only in frame rate share one stimulus, unless its method has
+/// temporal acceleration, whose tolerance tau depends on the frame rate.
 struct PlannedStimulus {
   StimulusSpec what;
   std::vector<int> cells;  ///< indices into Design::cells, ascending
@@ -35,7 +35,8 @@ struct SessionLook {
   base::PictureSize size;  ///< size of the participant's picture
 };
 
-/// The order for a stimulus that can be baked, without pictures. base::Error if its scene cannot be read.
+/// The content of the bake of a stimulus that can be baked, without pictures. base::Error if its scene cannot
+/// be read.
 BakeOrder order_of(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look);
 
 }  // namespace study

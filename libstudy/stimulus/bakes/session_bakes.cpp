@@ -32,8 +32,8 @@ bool shows(const PlannedStimulus& planned, const Cell& cell) {
   return !planned.rate || (planned.rate->mean == cell.setting.mean && planned.rate->sd == cell.setting.sd);
 }
 
-/// The order with which a bake is compared. Pictures are wanted if the bake has pictures. Without a frame
-/// rate for tau in the protocol, the wanted rate is 0, which no bake has.
+/// The wanted content with which the bake `found` is compared. Pictures are wanted if the bake has pictures.
+/// Without a frame rate for the tolerance tau in the protocol, the wanted rate is 0, which no bake has.
 BakeOrder order_for(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look,
                     const sim::BakeHeader& found) {
   BakeOrder order = order_of(protocol, one, look);
@@ -49,7 +49,7 @@ void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path
                       "shows one scene, method, n_* and set of effects, but the protocol names several",
                       "bake them all: vip-study bake --protocol FILE --out FOLDER, then vip-study run "
                       "--stimulus FOLDER; or "
-                      "run the protocol live");
+                      "run the protocol live, without --stimulus");
   }
 }
 
