@@ -65,8 +65,9 @@ struct DoubtfulTime {
 struct Report {
   int participant = 0, visit = 1, position = 0;
   int scene = 0, n_star = 0, method = 0;
-  int period = 0;  ///< number of the trial's period (a run of trials of one block, see stats::periods_of()),
-                   ///< from 0 over all visits
+  /// Number, from 0 over all visits, of the trial's period: a run of successive trials with one scene and one
+  /// n_*.
+  int period = 0;
   std::map<std::string, double> answers;  ///< score by question id; unanswered questions are absent
 };
 

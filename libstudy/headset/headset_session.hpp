@@ -77,7 +77,7 @@ struct HeadsetChoice {
   bool eye_gaze = false;   ///< requests eye tracking; needs the participant's consent
   double patience_s = 10;  ///< longest wait for a frame, an image or a new session, s; then base::Error
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
-  std::optional<double> refresh_hz{};         ///< refresh rate to request; see request_rate()
+  std::optional<double> refresh_hz{};         ///< refresh rate to request, one that the runtime lists
   /// If the runtime's times do not convert to the session's clock, the program guesses the offset between the
   /// clocks such that the first converted time is the current time, but not before earliest_ns.
   std::int64_t earliest_ns = 0;

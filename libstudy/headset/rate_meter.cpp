@@ -14,7 +14,7 @@ constexpr std::size_t window = 16;
 constexpr double multiple = 0.2;  // largest deviation from a whole number, periods
 constexpr double most = 0.7;
 constexpr double same_rate_share = 0.04;  // largest relative difference of equal rates
-constexpr double on_grid = 0.1;           // periods
+constexpr double on_grid = 0.1;           // largest deviation of a step that counts as whole, periods
 
 double whole_periods(std::int64_t step_ns, double period_ns) {
   return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));

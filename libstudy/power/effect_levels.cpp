@@ -21,8 +21,9 @@ bool has_effects(const ShownFactors& factors, std::size_t treatment) {
   return factors.effects[static_cast<std::size_t>(level)] != no_effects_level;
 }
 
-/// Preferences as in Scenario::preferred. A treatment with effects is chosen over a treatment without effects
-/// with probability p. In any other pair, each treatment is chosen with probability .5.
+/// Probabilities that the row's treatment is chosen over the column's, row-major. A treatment with effects is
+/// chosen over a treatment without effects with probability p. In any other pair, each treatment is chosen
+/// with probability .5.
 std::vector<double> preferring_effects(const ShownFactors& factors, double p) {
   const std::size_t count = factors.methods.size();
   std::vector<double> out;

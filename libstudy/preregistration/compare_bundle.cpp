@@ -180,8 +180,8 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
-/// True if the pilot's curve was fitted at the level of the bundle's plan, or if the plan has no level.
-/// Otherwise adds the two levels to `differences`.
+/// True if the pilot's curve was fitted at the level (score) that the bundle's plan names for its question,
+/// or if the plan names none. Otherwise adds the two levels to `differences`.
 bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
   const Json pilot = results.value("pilot", Json());
   if (!pilot.is_object() || !pilot.contains("question") || !pilot.at("level").is_number()) return true;

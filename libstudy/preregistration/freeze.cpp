@@ -56,8 +56,9 @@ std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
   return out;
 }
 
-/// The plan with a level for each curve. A level that the plan lacks is taken from the protocol. base::Error
-/// if two protocols have different levels for one question.
+/// The plan with a level (the score at which a pilot's curve is fitted) for each question with a curve. A
+/// level that the plan lacks is taken from the protocol. base::Error if two protocols have different levels
+/// for one question.
 stats::AnalysisPlan with_levels(stats::AnalysisPlan plan, const std::vector<Protocol>& protocols) {
   const auto given = plan.levels;
   std::map<std::string, std::string> named_by;

@@ -8,7 +8,7 @@ namespace study {
 
 namespace {
 
-/// Reads one step of the list `steps`; see TrialStep.
+/// Reads one step of a trial from the list `steps`, such as "black 3", "stimulus first" or "ask realism".
 class StepReader {
  public:
   StepReader(const base::TomlTable& table, std::size_t index, const std::string& text, bool pairs)

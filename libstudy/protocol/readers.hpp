@@ -58,7 +58,8 @@ bool is_method(const std::string& word);
 bool is_particle_count(const std::string& word);
 inline constexpr int most_trials = 1000;  ///< largest number of trials of one participant
 inline constexpr std::size_t most_cells = 1000;
-/// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
+/// Every combination of the factors, ordered by scene, n_*, method, effects and moments (mean and standard
+/// deviation of the frame rate).
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
                              const std::vector<EffectSet>& effects);
 /// Reads a list of words; refuses empty and repeated words.

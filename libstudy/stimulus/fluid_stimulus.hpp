@@ -94,8 +94,8 @@ class LiveFluid final : public Stimulus {
   void draw(const Canvas& canvas) override;
   /// The simulation at the prepared step; exists from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
-  /// Numbers of interventions of the solver's guards over all frames since the stimulus was made, including
-  /// frames before a rewind.
+  /// How often each of the solver's safety rules, such as the speed limit, intervened in all frames since the
+  /// stimulus was made, including frames before a rewind.
   const sim::GuardCounts& guards() const { return guards_; }
   /// True if the method uses the picture of the last frame, so that every frame must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }

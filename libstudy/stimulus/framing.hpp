@@ -14,7 +14,8 @@
 
 namespace study {
 
-/// The gaze of a person in a headset, as a ray in the space of the headset's eyes; see eye_view().
+/// The gaze of a person in a headset, as a ray in the headset's space, whose origin is the eye of the scene's
+/// camera; see eye_view().
 struct RoomRay {
   std::array<double, 3> place_m{};    ///< start of the ray, metres of the scene
   std::array<double, 3> direction{};  ///< direction of the ray, of any length except 0

@@ -14,10 +14,11 @@ struct SweepCell {
   /// of each particle moved by one unit in the last place; the directions depend on the seed.
   int seed = 1;
   double seconds = 2;  ///< simulated time from frame 0
-  /// Size of the pictures whose drawing is timed; a method that depends on the picture receives them. Empty:
-  /// none.
+  /// Size of the pictures whose drawing is timed, such as "1280x720"; a method that depends on the picture
+  /// receives them. Empty: none.
   std::string size = {};
-  /// Size of the pictures that are stored for comparison, outside the timing. Empty: none.
+  /// Size of the pictures that are stored for comparison, such as "240x135"; they are drawn outside the
+  /// timing. Empty: none.
   std::string kept = {};
   bool operator==(const SweepCell&) const = default;
 };
@@ -32,7 +33,7 @@ struct SweepPlan {
   std::string scene = "SingleDam";
   std::int64_t n_star = 4096;
   double seconds = 2;
-  int seeds = 2;          ///< starts of each setting except the references; see SweepCell::seed
+  int seeds = 2;  ///< number of starts of each setting except the references: SweepCell::seed 1, 2, ...
   std::string size = {};  ///< SweepCell::size of all cells
   std::string kept = {};  ///< SweepCell::kept of all cells
   /// True: the sweep varies only the method and the number of projections. It has no other size than n_star,

@@ -19,7 +19,7 @@ enum class SweepError {
   Centre,   ///< root mean square distance between the centres of mass, over the tank's length
   Kinetic,  ///< root mean square difference in kinetic energy, over the reference's maximum
   Density,  ///< mean over particles and instants of max(rho / rho_0 - 1, 0); needs no reference
-  Picture,  ///< this error and those below: see PictureError
+  Picture,  ///< this error and those below: differences of pictures, defined by PictureError
   Fovea,
   Salient,
   Ssim,

@@ -10,7 +10,7 @@ namespace study {
 /// Adds to `json` the boolean "converged", and a and b with their standard errors and intervals; null where
 /// undefined.
 void add_estimate(base::Json& json, const MainEstimate& estimate);
-/// The direct estimate with its jackknife and bootstrap.
+/// The direct estimate (a and b fitted to the ratings, without a contour) with its jackknife and bootstrap.
 base::Json direct_json(const stats::DirectEstimate& estimate);
 /// The contour estimate: the contour's points, the curve fitted to them, and its bootstrap.
 base::Json contour_estimate_json(const stats::PilotEstimate& estimate);

@@ -21,8 +21,10 @@ struct CellAnswer {
   /// lower index.
   int cell = 0;
   std::optional<int> other;  ///< pairs without a standard: the cell with the higher index
-  double value = 0;  ///< NaN for a choice among labels if no score is declared whose share is the outcome
-  int score = 0;
+  /// Value of the outcome, such as the score, or 1 or 0 for a choice. NaN for a choice among labels if no
+  /// score is declared whose share is the outcome.
+  double value = 0;
+  int score = 0;  ///< the answered score itself
 };
 
 /// The analysed answers to the question, in the order of participants, visits and trials. The value is that

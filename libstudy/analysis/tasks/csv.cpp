@@ -30,8 +30,8 @@ bool all_texts(const Json& list) {
   return std::all_of(list.begin(), list.end(), [](const Json& one) { return one.is_string(); });
 }
 
-/// True if the list has two entries and the name of an interval. The types of the entries cannot decide,
-/// because an infinite end is a text and not a number.
+/// True if the list has two entries and a name that the results give to intervals only. The types of the
+/// entries cannot decide, because an infinite end is a text and not a number.
 bool is_interval(const std::string& name, const Json& list) {
   return list.size() == 2 && (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" ||
                               name == "wilson" || name == "range");

@@ -8,8 +8,8 @@ namespace study {
 
 namespace {
 
-/// A factor of the design: the names of its levels, and for each treatment the indices of its levels of this
-/// factor and of the other one.
+/// The factor "effects" or "method": the names of its levels, and for each treatment (a method with a level
+/// of effects) the index of its level of this factor and the index of its level of the second factor.
 struct Factor {
   const char* name;
   std::vector<std::string> levels;

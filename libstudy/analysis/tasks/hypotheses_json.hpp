@@ -9,7 +9,8 @@
 namespace study {
 
 Json hypothesis_json(const stats::Hypothesis& hypothesis);
-/// The hypothesis with only the fields that a sensitivity analysis shows.
+/// Verdicts, estimates and p values of the hypothesis alone, for a sensitivity analysis: the hypotheses
+/// tested again under other rules.
 Json hypothesis_outline_json(const stats::Hypothesis& hypothesis);
 
 }  // namespace study

@@ -24,8 +24,10 @@ struct ResultsRequest {
   std::string sweep_file = {};                    ///< the sweep file's name for display
   /// True: makes the results although the journal of answers has answers that the database lacks.
   bool incomplete = false;
-  std::string question = {};         ///< the question's id; empty: all main questions
-  std::optional<double> level = {};  ///< score at which a pilot's curve is fitted; empty: see level_of()
+  std::string question = {};  ///< the question's id; empty: all main questions
+  /// Score at which a pilot's curve is fitted; empty: the plan's, else the protocol's, else the middle of the
+  /// scale.
+  std::optional<double> level = {};
 };
 
 /// A requested analysis without results.

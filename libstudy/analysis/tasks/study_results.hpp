@@ -26,8 +26,9 @@ struct FactorStudyRequest {
   /// The preregistration whose plan is in force. If empty, the hypotheses count as declared, but not as
   /// preregistered.
   std::optional<FrozenFacts> frozen = {};
-  std::optional<Json> since = {};  ///< an earlier document of the same protocol
-  std::string since_file = {};     ///< its name for display
+  /// An earlier document of the same protocol, against which participants are marked as new.
+  std::optional<Json> since = {};
+  std::string since_file = {};  ///< file name of `since` for display
 };
 
 /// The protocol with factors that `by` denotes (is_meant(); empty: any). Protocols without real answers are

@@ -1,5 +1,6 @@
 #pragma once
-/// Lists the stimuli of a protocol: which can be baked, in which file, and why the others run live.
+/// Lists the stimuli of a protocol: which can be baked (precomputed), into which file, and why any other must
+/// run live.
 
 #include <cstdint>
 #include <optional>

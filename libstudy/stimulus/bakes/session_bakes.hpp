@@ -1,6 +1,6 @@
 #pragma once
-/// The bakes that a session plays: which bake shows which cell, and notes about the other cells. Also finds
-/// bakes that were moved before a session is resumed.
+/// The bakes (files with precomputed frames of a fluid) that a session plays: which bake shows which cell,
+/// and notes about cells without one. Also finds bakes that were moved before a session is resumed.
 
 #include <filesystem>
 #include <map>

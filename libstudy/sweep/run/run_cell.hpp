@@ -8,7 +8,8 @@
 
 namespace study {
 
-/// The sample of these particles, without density_error and density_max. A particle's mass is 2^level.
+/// Front, centre of mass and kinetic energy of these particles; density_error and density_max stay 0. A
+/// particle's mass is 2^level.
 WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
 
 /// Runs the cell. The state of the water is measured between frames, outside the timing. base::Error if the
