@@ -16,7 +16,7 @@ inline constexpr const char* no_pairs = "no pairs of methods are shown";
 inline constexpr const char* no_choice_of_pair =
     "no question of kind choice with exactly two anchors, one for each of a pair, is asked";
 
-/// Items of the cybersickness score without unrealism.
+/// Ids of the questions on cybersickness other than 'unrealism'; their mean is a score of its own.
 inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
 /// Returns the plan's hypotheses of Task 1 if the protocol shows methods one by one and asks for realism and

@@ -19,7 +19,8 @@ MethodClaims read_method_claims(const std::vector<base::TomlTable>& tables);
 /// The claims as tables [[hypothesis]], which read_method_claims() reads back.
 std::string format_method_claims(const MethodClaims& claims);
 
-/// The claims of protocols/plans/paper.toml, read once. base::Error if the file is missing or malformed.
+/// The claims (hypotheses about methods) of protocols/plans/paper.toml, which is read at the first call.
+/// base::Error if the file is missing or malformed.
 const MethodClaims& shipped_claims();
 /// The plan's own claims, or shipped_claims() if the plan lists none.
 const MethodClaims& claims_in_force(const stats::AnalysisPlan& plan);

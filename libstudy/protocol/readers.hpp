@@ -1,5 +1,6 @@
 #pragma once
-/// Readers of the parts of a protocol file. They throw the errors of parse_protocol().
+/// Readers of the parts of a protocol file. They throw base::Error at file:line:column for a wrong type, a
+/// value out of range or two keys that contradict each other.
 
 #include <functional>
 #include <string>

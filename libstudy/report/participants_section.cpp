@@ -88,8 +88,8 @@ std::string distribution(const Field& cell) {
 
 bool flawed(const Field& cell) { return cell["degraded"].number() + cell["fail"].number() > 0; }
 
-/// True if a cell of the timing table has a number under `key`. `total`: the entry of timing_totals for the
-/// task.
+/// True if a cell of the timing table that belongs to the task of `total` has a number under `key`. `total`:
+/// an entry of timing_totals.
 bool measured(const Field& timing, const Field& total, const char* key) {
   const auto cells = timing.entries();
   return std::any_of(cells.begin(), cells.end(), [&](const Field& one) {

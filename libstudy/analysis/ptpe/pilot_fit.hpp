@@ -28,8 +28,8 @@ struct FitFlag {
 /// All estimates at one level of the scale. The predictor is either the harmonic or the arithmetic mean of
 /// the realised frame rate. `ordinal` and `band` are computed for the harmonic mean only.
 struct LevelFit {
-  stats::DirectEstimate direct;  ///< the main estimate
-  stats::PilotEstimate contour;  ///< the paper's estimate
+  stats::DirectEstimate direct;  ///< main estimate: the curve is fitted to the ratings
+  stats::PilotEstimate contour;  ///< paper's estimate: the curve is fitted to the contour of the mean ratings
   stats::OrdinalPilotEstimate ordinal;
   /// Confidence bands of mu(delta) for the solver's file (scale_end_fit.hpp).
   stats::Result<stats::CurveSpread> band = stats::Refusal{"not computed"};

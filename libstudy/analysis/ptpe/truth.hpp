@@ -22,7 +22,7 @@ stats::PtpeModel parse_truth(const std::string& observer);
 /// base::Error if the fit's level is not the middle of the scale, which is the level of an observer's curve.
 void check_comparable(const PilotFit& fit, const std::string& observer);
 
-/// Requires fit.ok().
+/// Checks if the intervals of the fit's main estimate cover the a and b of `truth`. Requires fit.ok().
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 
 /// Lines for the console: a heading, then for a and for b the interval and whether it covers the true value.

@@ -61,7 +61,8 @@ ExactMean mean_of_cells(const Sums& sums, int participant, const std::vector<int
   return {sum, static_cast<int>(count)};
 }
 
-/// Cells of a condition. If the outcome is a threshold: the first cell of each track of the condition.
+/// Cells of a condition. If the outcome is a threshold: the one cell that stands for each track of the
+/// condition (DesignTrack::cell).
 std::vector<int> condition_cells(const Design& design, const DeclaredHypothesis& hypothesis,
                                  std::size_t which) {
   std::vector<int> cells = cells_with(design, hypothesis.compare.at(which));

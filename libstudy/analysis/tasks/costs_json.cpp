@@ -29,7 +29,8 @@ struct RunningMean {
 struct ShownStimulus {
   StimulusSpec what;
   int sessions = 0, measured = 0;
-  /// Mean and 95th percentile of the time in ms that the station needs to compute and draw a frame.
+  /// Means over the sessions of the mean and of the 95th percentile of the time in ms in which the session's
+  /// computer computes and draws a frame.
   RunningMean made_ms, made_p95_ms;
   RunningMean interval_ms;  ///< mean frame interval in ms, over showings without a schedule of frames
   std::map<std::string, int> settings;  ///< number of sessions by setting text; "" = default setting

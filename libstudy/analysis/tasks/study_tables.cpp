@@ -93,7 +93,8 @@ Json cell_entry(const Design& design, const Question& question, const CellKey& k
   return json;
 }
 
-/// Describes in words, for display, the value that each participant contributes.
+/// Describes in words, for display, the value of one participant in a cell, over which a cell's mean is
+/// taken.
 std::string value_words(const Design& design, const Question& question) {
   if (!traits_of(question.kind).labelled) return "mean score";
   if (design.pairs && question.anchors.size() == 2)

@@ -164,7 +164,7 @@ Json omnibus_json(const ScoreTable& table, const stats::Omnibus& one) {
           {"anova", json_result(one.anova, anova_json)}};
 }
 
-/// One entry for each participant, n_* and method with at least one score.
+/// Each participant's mean of each score: one entry for each participant, n_* and method with a score.
 Json participant_means_json(const TaskData& data, const std::vector<ScoreTable>& tables) {
   Json list = Json::array();
   for (std::size_t person = 0; person < data.participants.size(); ++person) {
