@@ -52,8 +52,8 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   std::vector<GazeSample> gaze_;
   std::vector<SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  std::int64_t last_reported_ns_ = 0;  ///< newest sample time that the runtime reported
-  std::int64_t lag_ns_ = 0;            ///< largest lag of a reported sample time behind its slot's time
+  /// Newest sample time that the runtime reported; largest lag of such a time behind its slot's time.
+  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;
   /// Time of the newest sample that was stored, whether the runtime reported it or it was derived from the
   /// slot.
   std::int64_t last_ns_ = 0;

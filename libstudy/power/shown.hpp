@@ -21,7 +21,7 @@ struct ShownFactors {
   std::vector<std::string> scenes, n_stars;
   std::vector<std::string> methods;  ///< treatment_name(), such as "Ours" or "Ours, foam"
   std::vector<Place> cells;          ///< scene, n_* and method of each of Design::cells
-  std::vector<std::string> effects;  ///< levels of the factor; empty if effects are not a factor
+  std::vector<std::string> effects;  ///< levels of the factor effects; empty: no such factor
   /// For each of `methods`: `level` is its index in `effects`, `rest` the number of its method without the
   /// level of effects. Empty if effects are not a factor.
   std::vector<stats::FactorPlace> treatments;

@@ -17,7 +17,8 @@ struct Scenario {
 };
 
 struct World {
-  std::string id;     ///< "effect", "null", "margin" or "paper"; see PowerRequest::worlds
+  /// "effect" (effects as requested), "null" (none), "margin" (as large as the plan's margins) or "paper".
+  std::string id;
   std::string words;  ///< the world's assumptions in words
   std::vector<Scenario> scenarios;
 };

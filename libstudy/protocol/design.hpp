@@ -76,9 +76,8 @@ enum class TrialOrder {
 };
 
 enum class Assignment {
-  /// groups and rows of the order's square (Latin, Williams) are assigned to participants such that all are
-  /// used
-  /// equally often; dropouts do not count
+  /// groups and rows of the order's square (Latin, Williams) are assigned such that participants other than
+  /// dropouts use all equally often
   Balanced,
   PaperRandom  ///< groups and orders are drawn at random for each participant, as in the paper
 };

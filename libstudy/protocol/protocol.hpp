@@ -100,7 +100,7 @@ struct Block {
   std::optional<double> max_accuracy_deg;
   std::string like;              ///< Practice, Repeat, Catch: id of a Stimulus block
   std::vector<TrialStep> steps;  ///< Practice, Stimulus, Repeat: steps of each trial
-  double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
+  double between_groups_s = 0;   ///< Stimulus: length of the break before each group but the first, s
   int break_every = 0;           ///< Stimulus, format 3: trials from one break to the next; 0 = no break
   double break_s = 0;            ///< shortest duration of these breaks, s
   Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: that of the block `like`

@@ -122,7 +122,8 @@ void read_quest(const base::TomlTable& table, Procedure& out) {
   if (out.lapses.empty()) table.fail("lapse", "is empty", "write at least one lapse rate, such as 0.02");
 }
 
-/// Mean and standard deviation of each level, for the placement of the PTPE.
+/// Reads mean and standard deviation of the frame rate of each level into `out`, for the procedure "ptpe",
+/// which chooses among these settings.
 void read_moments_of_levels(const base::TomlTable& table, const Design& design, Procedure& out) {
   for (int level = 0; level < static_cast<int>(design.factors[out.factor].levels.size()); ++level) {
     const TimingProfile& profile = profile_of(table, design, out.factor, level);

@@ -78,8 +78,9 @@ void check_question_ids(const std::vector<base::TomlTable>& tables, const std::v
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
 /// Checks the rules that involve several blocks: unique ids, equal stop_at of all fms blocks, `accept` only
-/// before the first trials, reactions alone on their pages, the ids in `like` and `ask`, and `count`. Copies
-/// steps and the policy for interruptions to practice and repeat blocks. tables: the blocks' TOML tables.
+/// before the first trials, reactions alone on their pages, the ids in `like` and `ask`, and `count` not
+/// above the number of trials. Copies steps and the policy for interruptions from the block `like` to
+/// practice and repeat blocks. tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

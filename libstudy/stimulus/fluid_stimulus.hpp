@@ -128,7 +128,7 @@ class LiveFluid final : public Stimulus {
   std::optional<sim::TemperatureScale> painted_;
   /// Temperatures above the reference of the particles in the last picture, K.
   std::vector<float> temperature_k_;
-  double visual_scale_ = 1;  ///< sim::EyeLook::visual_scale of the last picture
+  double visual_scale_ = 1;  ///< of the last picture: Framing::visual_scale(); 1 in stereo
 };
 
 /// Parameters of a stimulus: a bake if `bake` is set, otherwise a live simulation.
@@ -139,8 +139,8 @@ struct StimulusChoice {
   std::string n_star = "32k";
   std::string backend = "auto";
   double content_step_s = 0;  ///< fluid time per content step; 0 = that of the setting, scene or bake
-  /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured frame
-  /// rate.
+  /// Live fluid only: frame rate from which temporal acceleration computes its tolerance tau. None = the
+  /// measured frame rate.
   std::optional<sim::FrameRate> fixed_rate;
   /// Live fluid only: all numbers of the solver; it replaces `method`, `n_star`, `fixed_rate` and `model`.
   /// tau then follows from the setting's beta instead of a frame rate. None = the default numbers.

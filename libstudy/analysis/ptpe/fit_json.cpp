@@ -43,8 +43,8 @@ Json levels_json(const std::map<double, LevelFit>& estimates) {
   return list;
 }
 
-/// A list with one entry for each setting of (mu, delta), made from the participants' mean scores at this
-/// setting.
+/// A list with one entry for each setting (mean mu and standard deviation delta of the frame rate), made from
+/// the participants' mean scores at this setting.
 Json cells_json(const PilotFit& fit) {
   const auto& grid = fit.grid;
   Json cells = Json::array();

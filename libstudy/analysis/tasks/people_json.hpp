@@ -29,7 +29,8 @@ struct GroupCounts {
 GroupCounts pool_small_groups(std::vector<std::pair<std::string, int>> counts);
 
 /// One entry for each of `parts` that asks participants about themselves and has analysed participants. Only
-/// analysed participants are counted. `answers`: TaskStudy::about_people.
+/// analysed participants are counted. `answers`: answers of all participants about themselves, from
+/// TaskStudy::about_people.
 Json people_json(const std::vector<const TaskData*>& parts, const std::vector<PersonalEntry>& answers);
 
 }  // namespace study

@@ -17,7 +17,8 @@ namespace study {
 struct PlannedStimulus {
   StimulusSpec what;
   std::vector<int> cells;  ///< indices into Design::cells, ascending
-  /// Frame rate for tau; none: a method without tau, or TimingSource::Native.
+  /// Frame rate from which the tolerance tau of temporal acceleration follows; none: a method without it, or
+  /// TimingSource::Native.
   std::optional<FpsSetting> rate;
   bool adaptive = false;    ///< true: the method chooses levels by the gaze
   std::int64_t frames = 0;  ///< content steps of its longest cell, from step 0; 0 under TimingSource::Native
