@@ -21,7 +21,8 @@ using ::testing::HasSubstr;
 const std::vector<std::string> sixteen{"P01", "P02", "P03", "P04", "P05", "P06", "P07", "P08",
                                        "P09", "P10", "P11", "P12", "P13", "P14", "P15", "P16"};
 
-/// The expected score of a setting, before noise.
+/// The expected score, before noise, of a setting whose frame rate has the mean mu and the SD delta,
+/// frames/s.
 using Surface = double (*)(double mu, double delta);
 
 testing_pilot::Score scored(Surface surface, double noise) {
@@ -91,8 +92,8 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndOnlyTheJsonIsWritten) 
     const std::string report = base::read_file(page, 1 << 24);
     EXPECT_THAT(report, testing::Not(HasSubstr("For the solver, at level")));
     EXPECT_EQ(report.find("Not for a solver, at level") != std::string::npos, bad.forced);
-    // --accept-form is needed too: the test of the form may reject scores that rise evenly in mu, not in log
-    // mu.
+    // --accept-form is needed too: the test of the curve's form, which assumes scores that rise evenly in log
+    // mu, may reject these scores, which rise evenly in mu.
     EXPECT_EQ(apps::test::run_shell(fit + " --force --accept-form").exit_code, bad.forced ? 0 : 1);
     EXPECT_EQ(std::filesystem::exists(folder / "ptpe.toml"), bad.forced);
   }
@@ -127,7 +128,7 @@ TEST(BadPilotE2e, APilotThatRisesIsNotRefused) {
   EXPECT_EQ(fitted.out.find("not for a solver"), std::string::npos) << fitted.out;
 }
 
-/// Scores with a threshold that levels off.
+/// Scores whose threshold in mu levels off as delta grows.
 double levelling(double mu, double delta) { return 4 + 0.14 * (mu - 24 - 14 * (1 - std::exp(-delta / 5))); }
 
 TEST(BadPilotE2e, ACurveOfAnotherFormReachesNoSolverUnlessItIsAccepted) {

@@ -1,4 +1,5 @@
-/// The stimuli of a protocol that are baked, and differences between a bake and the order.
+/// The stimuli of a protocol that are baked, that is computed beforehand, and the differences between the
+/// header of a bake and a BakeOrder, which says what the bake should hold.
 #include "libstudy/stimulus/bakes/session_bakes.hpp"
 
 #include <gmock/gmock.h>

@@ -149,7 +149,8 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   ASSERT_EQ(table(sweep).exit_code, 0);
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
-  // The output does not depend on the nearest setting, which depends on how busy the machine is.
+  // Only the text before the nearest setting is compared: which setting is nearest depends on how busy the
+  // machine is.
   EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is met by no setting of the sweep. Nearest is "));
   EXPECT_FALSE(std::filesystem::exists(path("none.toml")));
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));

@@ -22,7 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// protocols/foam.toml with another factor, and a scene of another name.
+/// protocols/foam.toml with these levels of the factor effects, these sets of effects, and this scene.
 study::Protocol protocol_with(const std::string& effects, const std::string& sets,
                               const std::string& scene = "sea_spray") {
   return study::parse_protocol(test::replaced(test::foam_text(effects, sets), "sea_spray", scene), "p.toml");

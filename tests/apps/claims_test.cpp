@@ -1,5 +1,6 @@
-/// Hypotheses about methods: those that a protocol tests, and the reasons for not testing others, before the
-/// study, in the bundle and on the page. Also hypotheses that a plan lists instead.
+/// Hypotheses about methods: those that a protocol tests and the reasons for not testing others, as printed
+/// before the study, in the bundle of a preregistration and on the report's page. Also the hypotheses that a
+/// plan lists itself, which replace the shipped ones.
 
 #include "libstudy/analysis/claims.hpp"
 

@@ -68,7 +68,8 @@ TEST_F(FoamStudyE2e, TheColumnsOfTask2StandUnderTheirHeads) {
   EXPECT_GT(pairs, 3);
 }
 
-// P(foam chosen) = Phi(1 / sqrt 2) = .76 with noise of 1 on each of the two.
+// P(foam chosen) = Phi(1 / sqrt 2) = .76: foam adds 1 to the score of a stimulus, and the score of each of
+// the two has noise of SD 1.
 TEST_F(FoamStudyE2e, TheReportFindsWhatFoamIsWorth) {
   const json results = report_of("1", "40");
   const json& task2 = results.at("task2");

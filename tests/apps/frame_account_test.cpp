@@ -1,5 +1,5 @@
-/// The facts of each frame in a study's database equal those of the solver: with the programs as a user runs
-/// them.
+/// The facts of each frame that a session stores in the database equal those that the solver reports. The
+/// tests run the programs as a user does.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,8 @@ class FrameAccountE2e : public ::testing::Test {
     const Ended ended = run_program(arguments);
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
   }
-  /// The accounts of the same 29 frames from vip-bench frame.
+  /// The solver's accounts of 29 frames, from vip-bench frame with the settings of the protocol's showing of
+  /// Ours-TSp.
   base::Json bench_accounts() {
     const std::string json = folder_ / "frame.json";
     const Ended ended = apps::test::run_shell(

@@ -118,7 +118,7 @@ TEST_F(HeadsetRealTimeGl, AHeadsetThatIsTakenOffHoldsNobodyUp) {
     spoilt = display.take_spoilt().has_value();
   }
   EXPECT_TRUE(spoilt);
-  display.turn();  // an invisible slot comes before the reason
+  display.turn();  // focus is lost one slot after the first that is not visible
   EXPECT_FALSE(display.focused());
   const std::int64_t off_ns = clock.now_ns();
   clock.wait_until(off_ns + 500'000'000);  // time continues without slots

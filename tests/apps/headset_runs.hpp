@@ -70,7 +70,7 @@ class HeadsetRuns : public ::testing::Test {
                      "--n-star", "64", "--frames", std::to_string(frames), "--out", out});
     ASSERT_EQ(baked.exit_code, 0) << baked.err;
   }
-  /// For tests that use the headset in their own process.
+  /// Sets the environment for a test that uses the simulated headset, with this profile, in its own process.
   void use_here(const std::string& profile) const {
     ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);
     ::setenv("XR_LOADER_DEBUG", "none", 1);

@@ -24,7 +24,7 @@ class HeadsetShowE2e : public test::HeadsetRuns {
     EXPECT_THAT(calls(), HasSubstr("xrDestroyInstance")) << profile;
   }
 
-  std::string seconds_ = "0.5";  ///< of predicted time
+  std::string seconds_ = "0.5";  ///< for --show; counted in predicted display time
 };
 
 TEST_F(HeadsetShowE2e, ASessionGoesThroughItsStates) {

@@ -128,7 +128,8 @@ TEST_F(HeadsetViewE2e, WhatMakesNoSenseIsRefused) {
   const auto ended = run_any({bin + "/vip-view", folder_ / "dam.toml", "--clock", "virtual"}, {});
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("--clock virtual: is for a headset"));
-  // The virtual clock needs a runtime whose time waits; this one is refused without a fallback.
+  // --clock virtual needs a runtime whose time stands still while the program computes. This runtime's time
+  // does not, so the program refuses and does not fall back to the desktop.
   const auto real = view("clock=real;rates=20;rate=20", {"--clock", "virtual"});
   EXPECT_EQ(real.exit_code, 1);
   EXPECT_THAT(real.err, HasSubstr("the headset's time does not wait"));

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 1,024 particles when all are finest.
+/// A fluid of 1,024 particles, if all particles are of the finest level.
 std::unique_ptr<sim::Simulation> few(sim::MethodKind method) {
   sim::SimulationOptions options;
   options.method = method;

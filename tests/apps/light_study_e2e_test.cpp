@@ -35,7 +35,8 @@ class LightStudyE2e : public ShownStudy {
   }
 };
 
-// P(lit chosen) = Phi(1 / sqrt 2) = .76 with noise of 1 on each of the two.
+// P(lit chosen) = Phi(1 / sqrt 2) = .76: light adds 1 to the score of a stimulus, and the score of each of
+// the two has noise of SD 1.
 TEST_F(LightStudyE2e, TheReportFindsWhatLightIsWorth) {
   const std::string results = folder_ / "results.json", page = folder_ / "report.html";
   const Ended ran = run_program({vip_study, "run", protocol_, "--db", database_, "--participants", "40",

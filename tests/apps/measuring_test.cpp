@@ -24,7 +24,8 @@ study::Protocol pilot_with(const std::string& key, const std::string& value) {
                                "pilot.toml");
 }
 
-/// A stimulus and a display in one. Preparing and drawing a frame take these times on a virtual clock.
+/// A stimulus and a display in one. Preparing a frame takes compute_s(step), and drawing it draw_s, on a
+/// virtual clock.
 class SlowStage final : public study::Stimulus, public study::Display {
  public:
   using Cost = std::function<double(std::int64_t)>;
@@ -99,7 +100,7 @@ TEST(Measure, EndsAfterFiveSecondsWhereNoCellIsReached) {
 
 TEST(Measure, GoesOnForTheCellsThatAreStillReached) {
   const auto protocol = study::test::pilot();
-  SlowStage stage([](std::int64_t) { return 0.05; }, 0.01);  // 16.7 frames/s: 100 steps of (10, ...) in 6 s
+  SlowStage stage([](std::int64_t) { return 0.05; }, 0.01);  // 60 ms a frame, so 100 frames take 6 s
   const study::StepTimes times = measured(protocol, stage);
   EXPECT_EQ(times.compute_s.size(), 100u);
   for (const study::MeasuredCell& cell : judged(protocol, times).cells)
@@ -207,8 +208,8 @@ TEST(Rehearsal, StepsThatWereNotMeasuredTakeWhatTheLastOnesDid) {
   EXPECT_EQ(rehearsal.measured, times.compute_s.size() - 1);
 }
 
-// A hundred steps were measured, six of them slow; the other hundred of the trial use the mean of the last
-// 30.
+// The trial needs 200 steps. A hundred were measured, the last six of them slow; each other step is taken to
+// cost the mean of the last 30.
 TEST(Rehearsal, TheNinetyFifthPercentileIsOfMeasuredFramesAlone) {
   study::StepTimes times = steps_of(0.001, 0, 100);
   std::fill(times.compute_s.end() - 6, times.compute_s.end(), 0.04);

@@ -38,7 +38,8 @@ class OutputOptionsE2e : public ::testing::Test {
     EXPECT_EQ(program(cell).exit_code, 0) << cell;
   }
 
-  /// Runs a program of the build with its arguments, like TableTest.
+  /// Runs a program of the build with its arguments, on one thread and without stored states. It reads its
+  /// shared files from `share_`, locks there too, and may take 60 s.
   Ended program(const std::string& program_and_arguments) const {
     return run_shell(
         "cd " + share_.path().string() +

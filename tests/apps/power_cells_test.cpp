@@ -1,5 +1,5 @@
-/// vip-stats power in cells: together they are the whole calculation, and their shards give the result of one
-/// run.
+/// vip-stats power in cells, each some of the studies of one number of people: together they are the whole
+/// calculation, and the files with their outcomes (shards) give the result of one run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -49,7 +49,7 @@ Lines commands_of(const std::string& program) {
   return commands.empty() ? Lines{program} : commands;
 }
 
-/// The commands in the rows of the table, without their arguments (capital letters).
+/// The commands in the rows of the table of docs/commands.md, without their arguments (capital letters).
 Lines commands_in_table() {
   static const std::regex row(R"(^\| `(vip-[a-z]+( [a-z][a-z0-9-]*)?)[ `].*)");
   Lines commands;

@@ -111,7 +111,8 @@ TEST(ReportChoice, TwoVersionsOfATaskStandApart) {
   ASSERT_EQ(json.at("apart").size(), 1u);
   EXPECT_EQ(json.at("apart")[0].at("flow").at("task1").at("analysed"), 3);
   EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), study::Json{"apart 1"});
-  // The version of twelve people has the same results if it is analysed without the other one.
+  // The protocol's version with twelve people has the same results if it is analysed without the other
+  // version.
   const study::Json alone = results_of({{made_study::task1(12)}, 2});
   EXPECT_EQ(json.at("task1"), alone.at("task1"));
   EXPECT_EQ(json.at("hypotheses"), alone.at("hypotheses"));

@@ -53,7 +53,8 @@ TEST(PeopleOfTheReport, SmallGroupsAreTakenTogetherWithTheNextSmallest) {
   EXPECT_THAT(groups({{"f", 1}, {"m", 1}}).shown, IsEmpty());
 }
 
-// For all counts: no group, no pool and no difference of sums is smaller than smallest_group.
+// For all counts of three answers: each group that is shown, and the pool of all others beside shown ones,
+// which follows from the sum, has at least smallest_group people.
 TEST(PeopleOfTheReport, NoGroupThatIsShownOrFollowsIsSmaller) {
   for (int f = 0; f <= 9; ++f) {
     for (int m = 0; m <= 9; ++m) {

@@ -42,7 +42,7 @@ inline std::vector<Fact> of_the_pilot() {
 
 inline std::vector<Fact> of_task1() {
   const std::string pairs = "/task1/comparisons", model = "/task1/ordinal";
-  // A comparison without t whose test is significant, with one star.
+  // A significant comparison (one star) by a sign test, which has no statistic t.
   const Change alike = all({set(pairs + "/0/t", nullptr), set(pairs + "/0/stars", "*"),
                             set(pairs + "/0/test", "exact sign test")});
   const auto tipping = [&](const Json& one) {

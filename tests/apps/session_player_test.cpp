@@ -14,7 +14,7 @@ namespace {
 using study::test::Scripted;
 using ::testing::HasSubstr;
 
-/// Plays sessions as a window does, but without one.
+/// Plays the sessions of a run with a scripted participant, on a virtual clock and without a window.
 class Played : public ::testing::Test {
  protected:
   Played() {

@@ -1,5 +1,6 @@
 #pragma once
-/// A pilot answered by the simulated observer, in the form that a database gives: realised = nominal timing.
+/// A pilot answered by a simulated observer, in the form in which a database is read. Its realised timing
+/// equals the nominal one.
 
 #include <cstdint>
 #include <string>

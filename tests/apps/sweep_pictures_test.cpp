@@ -90,8 +90,9 @@ TEST(SweepPictures, AfterThePartingOnlyTheFilmIsTold) {
   const study::CellRun early = film({106, 106, 106, 106, 100, 100}),
                        late = film({100, 100, 106, 106, 160, 160}),
                        usual = film({106, 106, 106, 106, 106, 106});
-  // The median difference of the three runs is 6 at each instant. The pictures part where the twin differs by
-  // at least a third of this median, 2. The twin differs by 1 at 0.2 s, and by 4 at 0.2 s + 1/30 s.
+  // The twin is the reference from a start that differs by one unit in the last place. The median difference
+  // of the three runs from the reference is 6 at each instant. The pictures part where the twin differs by at
+  // least a third of this median, 2. The twin differs by 1 at 0.2 s, and by 4 at 0.2 s + 1/30 s.
   const auto scores = study::score_pictures({&early, &late, &usual}, reference, twin);
   EXPECT_NEAR(scores.parting_s, 0.2 + 1.0 / 30, 1e-12);
   EXPECT_NEAR(error(scores, 0, study::PictureError::Picture), 100 * 6 / 255.0, 1e-9);

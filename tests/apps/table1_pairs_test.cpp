@@ -1,4 +1,5 @@
-/// Runs of two trees by vip-bench table1: the same checkpoints, pictures paired one by one.
+/// vip-bench table1 of two versions of the source tree: both start from the same checkpoints, and each
+/// picture of one is compared with the same picture of the other.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

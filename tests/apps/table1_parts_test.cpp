@@ -101,7 +101,7 @@ TEST(Table1Masks, TheSalientFifthIsRankedByFAndLeavesTheFoveaOut) {
   std::vector<float> by_id(10);
   for (int i = 0; i < 10; ++i) {
     ids.push_back(9 - i);
-    by_id[static_cast<std::size_t>(9 - i)] = static_cast<float>(i);  // F rises along x
+    by_id[static_cast<std::size_t>(9 - i)] = static_cast<float>(i);  // the feature F rises along x
   }
   by_id[static_cast<std::size_t>(ids[4])] = std::nanf("");
   const auto salient = measure::salient_mask(picture, ids, by_id, Mask(50, 0));
@@ -175,7 +175,8 @@ std::string verdict_of(const measure::ScoreBlock& block, const std::string& metr
   return "no row";
 }
 
-/// A film has a cell for each of its starts, and its starts are no repeats of a gaze point.
+/// A film has one cell for each start, and its cells need not form groups of repeats as those of stills do:
+/// one start is enough for a row.
 TEST(Table1Scores, AFilmOfOneStartHasARowBesideRepeatedStills) {
   measure::Table1Options options;
   options.repeats = 5;

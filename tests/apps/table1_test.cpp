@@ -35,7 +35,7 @@ TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
           << method << ' ' << name << ": two gaze points, or two starts of the film";
     }
     EXPECT_EQ(metrics.at("psnr_overall").at("pixels"), "90000");
-    // Masks come from HiRes and are the same for all.
+    // The masks are made from HiRes and are the same for all methods.
     for (const char* mask : {"psnr_fov", "psnr_salient"}) {
       EXPECT_EQ(metrics.at(mask).at("pixels"), table["HiRes"][mask]["pixels"]) << method;
       EXPECT_EQ(metrics.at(mask).at("skipped"), "0") << method;

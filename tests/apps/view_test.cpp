@@ -38,7 +38,7 @@ class ViewE2e : public ::testing::Test {
                 " --method LoRes --n-star 64 --backend cpu --size 64x48 --frames 3 " + more);
   }
 
-  /// A file for --ptpe.
+  /// Writes a fitted curve for --ptpe. Returns the file's path.
   std::string fitted() const {
     sim::PtpeFile file;
     file.model = {31.5, 0.035};

@@ -94,8 +94,9 @@ std::vector<std::string> kept_of_others(const fs::path& path) {
   return all;
 }
 
-/// For a database its bytes after its tombstones are overwritten in place; for a journal the lines except
-/// tombstones; for any other file its bytes.
+/// The file's bytes without tombstones, the records of withdrawals. For a database: the bytes of a copy in
+/// which the tombstones are deleted and overwritten; for a journal: the lines except tombstones; for any
+/// other file: all bytes.
 std::string without_tombstones(const fs::path& path) {
   if (path.string().ends_with(".answers.jsonl")) {
     std::istringstream lines(bytes_of(path));

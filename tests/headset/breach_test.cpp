@@ -137,7 +137,7 @@ TEST_F(BreachGl, ImageThatWasNotReleased) {
   client.poll();
   client.wait();
   client.begin();
-  client.state.shouldRender = XR_FALSE;  // draws nothing
+  client.state.shouldRender = XR_FALSE;  // end() then draws no images
   EXPECT_EQ(client.end([](Drawing& d) {
     d.layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&d.projection));
   }),

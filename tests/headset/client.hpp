@@ -34,8 +34,9 @@ T blank(XrStructureType type) {
 
 class Client {
  public:
-  /// Connects and makes a session with two swapchains. `profile`: VIP_XR_PROFILE, with small images by
-  /// default. `binding`: graphics binding of the current OpenGL context; null makes an EGL context.
+  /// Connects and makes a session with two swapchains, one per eye. `profile`: value of VIP_XR_PROFILE; the
+  /// images have 64 x 48 px unless it sets `size`. `binding`: graphics binding of the current OpenGL context;
+  /// null makes an EGL context.
   explicit Client(const std::string& profile = "", const void* binding = nullptr);
   ~Client();
   Client(const Client&) = delete;
@@ -49,7 +50,7 @@ class Client {
   void poll();
   /// Handles events and runs one frame. Returns the result of xrEndFrame, or of the first call that failed.
   XrResult frame(const Spoil& spoil = {});
-  /// Runs frames until the session has that state; at most 100.
+  /// Runs frames until the session has that state. The test fails if 100 frames do not suffice.
   void frames_until(XrSessionState state);
 
   XrResult wait() { return call<PFN_xrWaitFrame>("xrWaitFrame")(session, nullptr, &state); }

@@ -1,5 +1,5 @@
 #pragma once
-/// OpenXR's declarations as the project uses them, and those of the Xlib binding.
+/// The declarations of OpenXR from libstudy/headset/openxr.hpp, with those of the Xlib binding added.
 
 // epoxy first: it replaces the headers of EGL, GL and GLX.
 #include <epoxy/egl.h>

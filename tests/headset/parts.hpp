@@ -84,15 +84,16 @@ std::string subaction_of(const Action& action, XrPath path);
 
 // inputs.cpp
 std::string controller_profile();
-/// Sources that are bound to an action and present. Empty if the session had no focus at the last
-/// xrSyncActions, or that call did not name the action's set.
+/// Sources, beginning with `subaction`, that are bound to an action and present: those of the right hand, and
+/// those of the eyes if the profile sets `gaze`. Empty if the session had no focus at the last xrSyncActions,
+/// or that call did not name the action's set.
 std::vector<std::string> sources_of(const Session& session, std::uint64_t action,
                                     const std::string& subaction);
 
 // pointing.cpp
 struct Gaze {
   Pose pose;
-  XrTime time = 0;  ///< of the sample
+  XrTime time = 0;  ///< when the eye tracker took the sample
   bool valid = false, tracked = false;
 };
 Gaze gaze_at(XrTime time);

@@ -17,7 +17,7 @@ Pose aimed(Vector from, Vector to) {
   return {turned(yaw / radians_per_degree, pitch / radians_per_degree, 0), from};
 }
 
-/// Index of the current target, and the elapsed fraction of the time for which it is held.
+/// Index of the target to point at now, and the elapsed fraction of the `hold` seconds until the next target.
 struct Turn {
   std::size_t target;
   double part;

@@ -24,17 +24,17 @@ struct Profile {
   std::string headset = "connected";   ///< "connected", "unavailable" or "unsupported"
   std::string clock = "virtual";       ///< "virtual" or "real"
   std::string head = "still";          ///< "still", "turn" or "walk"
-  std::string leave_context = "kept";  ///< after calls that may use GL: "kept", "none" or "other"
+  std::string leave_context = "kept";  ///< context that GL calls leave current: "kept", "none" or "other"
   std::string look = "fixed";          ///< the eyes: "fixed", "sweep" or "page"
   std::string point = "fixed";         ///< the hand: "fixed" or "page"
   std::string controller = "khr/simple_controller";
-  std::vector<std::pair<double, double>> targets;  ///< on a page, fractions from left and top
+  std::vector<std::pair<double, double>> targets;  ///< to point at on a page; fractions from left and top
   std::uint32_t width = 2064, height = 2208;       ///< px, recommended for each eye
   std::vector<std::string> extensions;
   std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are listed
   float rate = 90;                            ///< Hz, current
   std::vector<std::int64_t> formats;          ///< GL internal formats, the preferred one first
-  std::int64_t broken_format = 0;             ///< listed, but cannot be made
+  std::int64_t broken_format = 0;             ///< listed, but no swapchain of it can be made; 0: none
   std::vector<double> fov{-52, 42, 46, -50};  ///< degrees left, right, up, down of the left eye
   std::vector<long> dumps;                    ///< frames whose images are written to files
   std::map<std::string, double> knobs;        ///< values that the script may change, by name

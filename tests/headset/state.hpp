@@ -37,7 +37,7 @@ struct Frame {
   bool should_render = false;
 };
 
-/// A part of a controller, as of the last xrSyncActions.
+/// State of a controller's part at the last xrSyncActions; `before`: its value at the call before that one.
 struct Input {
   using Value = std::array<double, 2>;
   Value value{}, before{};
@@ -113,8 +113,8 @@ struct Clock {
   bool real = false;
   XrTime start = 0;
   XrTime now = 0;             ///< on the virtual clock
-  XrTime last_slot = 0;       ///< the newest slot that was returned
-  XrTime last_predicted = 0;  ///< the time that was predicted for the newest slot
+  XrTime last_slot = 0;       ///< refresh of the display that the newest frame is meant for
+  XrTime last_predicted = 0;  ///< time reported for that refresh: with jitter, or repeated
   XrTime last_end = 0;        ///< when the newest frame of a running session ended
 };
 constexpr XrTime ahead_of_monotonic = 1'000'000'000'000;

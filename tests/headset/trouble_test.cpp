@@ -1,4 +1,5 @@
-/// Faults that a profile can cause, as the program sees them.
+/// How a program notices the faults that a profile makes the runtime have: events, results of calls, times,
+/// and GL state.
 #include <gmock/gmock.h>
 
 #include <thread>

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 
 constexpr const char* layer = "XR_APILAYER_LUNARG_core_validation";
 
-/// Turns the validation layer on for instances that are made while it lives.
+/// While the object lives, OpenXR instances are made with the validation layer, which writes to file().
 struct Validation {
   Validation() {
     ::setenv("XR_ENABLE_API_LAYERS", layer, 1);

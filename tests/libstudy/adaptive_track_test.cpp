@@ -63,8 +63,8 @@ std::string placement_text() {
                  "kind = \"scale\"\ntext = \"How satisfied?\"\nscale = [1, 7]");
 }
 
-/// Plays a session of one simulated person, stopped after every `stop_after` trials and continued. Returns
-/// the cells shown, comparison first for pairs.
+/// Plays a session of one simulated person. The program stops after every `stop_after` trials and resumes.
+/// Returns the cells of each trial in the order shown, with -1 as the second one if a trial has one stimulus.
 std::vector<std::pair<int, int>> play(const Protocol& protocol, const std::string& observer, int stop_after) {
   const test::TemporaryFolder folder;
   const auto path = folder / "study.db";

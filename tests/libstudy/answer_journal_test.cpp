@@ -52,7 +52,8 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return path;
 }
 
-/// answer_by_hand() stores the next answer of P01 step by step and kills its process after the step `until`.
+/// answer_by_hand() stores the next answer of P01 and kills its process after the step `until`: the SQL
+/// statements, the lines in the journal, the commit, or the journal's line that says that it was committed.
 enum class Until { Statements, Journal, Commit, Kept };
 void answer_by_hand(const fs::path& path, Until until) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
@@ -120,7 +121,7 @@ TEST(AnswerJournal, EqualsTheDatabaseAfterAllThatHappensInASession) {
   const fs::path path = make_study(folder);
   test::expect_journal_equals(path);
   Store store(path, Open::Write);
-  store.open_runs();  // marks the interrupted presentation
+  store.open_runs();  // marks the unfinished presentation as interrupted
   test::expect_journal_equals(path);
 }
 

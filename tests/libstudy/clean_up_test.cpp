@@ -73,7 +73,7 @@ std::string age_of(const fs::path& path, const std::string& code) {
   return entries.empty() ? "" : entries.front().answer;
 }
 
-/// Commits a withdrawal as withdraw() does, but stops before the clean-up of other files.
+/// Commits a withdrawal as withdraw() does, but stops before the clean-up of the files beside the database.
 void withdraw_and_stop(const fs::path& path, const std::string& code) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   const std::string person = database->text("SELECT person FROM session WHERE participant = '" + code + "'");
@@ -116,8 +116,8 @@ TEST(CleanUp, ARepeatedWithdrawalAndAMergeDoItToo) {
   }
 }
 
-// A chore may stop after it changed files and before its row in the table chore is deleted. The test puts the
-// database with that row back and runs the chore again.
+// A chore is a step of the clean-up, recorded as a row of the table chore. It may stop after it changed files
+// and before that row is deleted. The test puts the database with that row back and runs the chore again.
 TEST(CleanUp, DoneTwiceItComesToTheSame) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", before = folder / "before";

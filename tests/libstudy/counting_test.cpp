@@ -46,7 +46,7 @@ class Counting : public ::testing::Test {
     judge(parted, 1, 4, false);
     show(parted, 2);
     keep(parted, 2, {{"fms", 7}}, true);
-    store_.open_runs();  // marks the interrupted presentation
+    store_.open_runs();  // marks the unfinished presentation as interrupted
   }
 
   OpenSession session() { return store_.open_runs().at(0).sessions.at(0); }
@@ -129,12 +129,13 @@ TEST_F(Counting, EachTrialIsKnownByTheShowingThatWasJudgedFirst) {
 TEST_F(Counting, TheCertificateIsOfJudgedShowingsAlone) {
   std::int64_t trials = 0;
   for (const CertificateRow& row : read_certificate(path_, 1, FpsMean::Harmonic)) trials += row.trials;
-  // practice, plain, repeated, excluded, again and both of parted
+  // Counted are one showing each of practice, plain, repeated, excluded and again, and both showings of
+  // parted.
   EXPECT_EQ(trials, 7);
 }
 
-// A pilot of 40 people has about 280,000 frames, so the means of a showing must be computed from a search for
-// its own frames, not from a scan of the table.
+// A pilot of 40 people has about 280,000 frames, so the means of a showing must be computed from an index
+// search for its own frames, not from a scan of the table of all frames.
 TEST_F(Counting, AShowingsMeansAreReadFromItsOwnFramesAlone) {
   sqlite::Connection database(path_, Open::Read);
   sqlite::Statement plan(database,

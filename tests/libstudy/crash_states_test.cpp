@@ -1,5 +1,5 @@
-/// The models by which vip-faults judges commands: two models of a power cut, and one of permission
-/// decisions. Also failing reads.
+/// The models by which vip-faults, which injects faults, judges commands: two models of a power cut, and one
+/// of permission decisions. Also, each way to read a file must report a read that fails.
 #include <gtest/gtest.h>
 
 #include <fstream>

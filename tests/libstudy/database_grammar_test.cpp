@@ -29,7 +29,8 @@ void attack_many(std::uint64_t first_seed, int count) {
     const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    // Commands often accept a database that one statement has changed, but seldom one that many have changed.
+    // The number of bytes, and so of statements, varies: commands often accept a database that one statement
+    // has changed, but seldom one that many have changed.
     std::vector<std::uint8_t> bytes(4 + random() % 60);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const test::ProcessorTime limit(most_seconds);

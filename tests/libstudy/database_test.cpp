@@ -121,7 +121,7 @@ TEST(Database, CutOffInItsFirstTransactionIsMadeAnew) {
               ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
   Store(run, Open::Create).add_run(test::run_plan(test::pilot(), {"P02"}));
   EXPECT_EQ(merge({path, run}, into).sessions, 2);
-  // Beside a complete database such a journal does not make it count as empty.
+  // A rollback journal that says that the file was empty does not make a complete database count as empty.
   fs::copy_file(path, folder / "whole.db");
   put_unmade(folder / "other.db");
   fs::rename(folder / "other.db-journal", folder / "whole.db-journal");

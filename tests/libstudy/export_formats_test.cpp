@@ -25,7 +25,8 @@ using ::testing::ThrowsMessage;
 
 constexpr const char* secret = "my own words";
 
-/// The first participant answers a page, a practice pair and the remarks; the codes need labels.
+/// The first participant answers a page, a practice pair and the remarks. The participants' codes have
+/// characters that labels of BIDS must not have.
 fs::path make_study(const test::TemporaryFolder& folder) {
   const fs::path path = folder / "study.db";
   Store store(path, sqlite::Open::Create);

@@ -38,7 +38,7 @@ bool is_formula(const std::string& field) {
   return false;
 }
 
-/// Recovers the original words by the rule in the dictionary.
+/// Recovers the original words by the rule that the data dictionary of an export states.
 std::string read_back(const std::string& field) {
   const std::size_t first = field.find_first_not_of('\'');
   const bool guarded = first != 0 && first != std::string::npos && is_formula(field.substr(first));
@@ -70,7 +70,8 @@ bool is_number(const std::string& field) {
   return !field.empty() && *end == '\0';
 }
 
-/// Every free text of a session is hostile; one question asks for words.
+/// A session with all texts of `hostile` as notes, and with formulas as its station and as the reason of each
+/// exclusion.
 void make_hostile_study(const fs::path& path) {
   Store store(path, sqlite::Open::Create);
   RunPlan plan = test::run_plan(test::pairs(), {"P01"});

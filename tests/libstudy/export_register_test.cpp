@@ -162,8 +162,8 @@ TEST_F(Exports, ThatWereMovedAreNamedOnce) {
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
 }
 
-// The deletion of an export is interrupted after its row was marked, after its folder was renamed to the
-// draft, and after one of its files was deleted.
+// The deletion of an export is interrupted at one of three steps: after its row in the register was marked,
+// after its folder got the name of the draft, and after one of its files was deleted.
 TEST_F(Exports, ADeletionThatWasCutIsFinished) {
   for (const int step : {0, 1, 2}) {
     const std::string code = "Q" + std::to_string(step);
@@ -206,7 +206,7 @@ TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   export_csv(path, csv);
   merge({path}, folder / "all.db");
   EXPECT_THAT(withdraw(folder / "all.db", "P01").beside.cleaned, ElementsAre(csv));
-  // On the other station: a merge with a withdrawal deletes the station's own export.
+  // In the other direction: a merge that brings a withdrawal to a station deletes the station's own export.
   add("P02");
   export_csv(path, csv);
   EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
@@ -242,7 +242,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     ::kill(merging, SIGCONT);
   }
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_GT(refused, 0);  // while the merge commits
+  EXPECT_GT(refused, 0);  // some are, while the merge commits
   ASSERT_GT(entered.size(), 10u);
   for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;
 }

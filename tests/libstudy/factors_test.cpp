@@ -172,7 +172,8 @@ TEST(Factors, OrderMayKeepLevelsApart) {
   const Plan plan = make_plan(protocol, "P01", 1, 0);
   for (std::size_t i = 5; i < plan.trials.size(); ++i)
     EXPECT_NE(plan.trials[i].first, plan.trials[i - 1].first) << i;
-  // Four of seven cells have the content dam: an order exists for one trial of each cell, but not for ten.
+  // Four of seven cells have the content dam. An order in which no two adjacent trials have the same content
+  // exists for one trial of each cell (4 of 7 have dam), but not for ten (40 of 70).
   std::string cells;
   for (const char* cell :
        {"none dam", "h33 dam", "h50 dam", "h67 dam", "h100 drop", "h150 drop", "none drop"}) {

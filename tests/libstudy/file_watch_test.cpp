@@ -52,7 +52,8 @@ class Replaced : public ::testing::Test {
     return {};
   }
 
-  /// Expects that each write throws `problem`, and that no log and no shared memory remain after the session.
+  /// Expects that each write throws `problem`, and that SQLite's log and shared memory are gone after the
+  /// session.
   void expect_stop(const std::string& problem) {
     EXPECT_THAT([&] { write("after"); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr(path_.string()), HasSubstr(problem))));
@@ -62,8 +63,8 @@ class Replaced : public ::testing::Test {
     EXPECT_FALSE(fs::exists(path_.string() + "-shm"));
   }
 
-  /// Expects a file beside the database that only its owner may read. It has all notes, with the one whose
-  /// write met the problem.
+  /// Expects a copy of the study beside the database's path that only its owner may read. The copy has all
+  /// notes, also the one whose write met the problem.
   void expect_rescued() {
     const fs::path saved = rescued(".db");
     ASSERT_FALSE(saved.empty());
@@ -94,7 +95,7 @@ TEST_F(Replaced, AnotherDatabaseMovedThereStaysAsItIs) {
   fs::rename(other_, path_);
   expect_stop("was replaced by another file");
   EXPECT_TRUE(test::bytes_of(path_) == before);
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // the journal belongs to the first study
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // true: despite the first study's journal
   fs::remove(path_);
   expect_rescued();
 }
@@ -109,7 +110,7 @@ TEST_F(Replaced, AnotherDatabaseCopiedOverItStaysAsItIs) {
   copy_over(other_, path_);
   expect_stop("was written over by another program");
   EXPECT_TRUE(test::bytes_of(path_) == test::bytes_of(other_));
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // the journal belongs to the first study
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // true: despite the first study's journal
   // If SQLite's cached pages make a complete database, it is saved; otherwise the log is saved.
   EXPECT_FALSE(rescued(".db").empty() && rescued(".wal").empty());
 }
@@ -149,7 +150,8 @@ TEST_F(Replaced, ItsOwnLogMayBeCopiedBackAsOftenAsItLikes) {
   EXPECT_EQ(Connection(path_, Open::Read).integer("SELECT count(*) FROM frame"), 180000);
 }
 
-/// Without a log, the watch must not open the shared memory, because SQLite would never close it.
+/// If the database has no write-ahead log, the watch must not open SQLite's shared-memory file, because
+/// SQLite would never close it.
 TEST(FileWatch, OpensNoSharedMemoryWhereThereIsNoLog) {
   const test::TemporaryFolder folder;
   Connection database(folder / "s.db", Open::Create);

@@ -106,7 +106,7 @@ TEST_F(ForeignLock, AnAnswerThatCannotBeCommittedIsKeptForTheNextOpening) {
     EXPECT_THAT([&] { give_consent(store, session); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr("is locked by"), HasSubstr(name),
                                                  HasSubstr("vip-study resume --db " + path_.string()))));
-    // The same answer again is refused, which must not drop the first one.
+    // The same answer, given again, is refused. This must not drop the first one, which is still kept.
     EXPECT_THAT([&] { give_consent(store, session); },
                 ThrowsMessage<base::Error>(HasSubstr("takes no answer")));
     EXPECT_THROW(store.note(1, {}, "said while it waited"), sqlite::LockedOut);

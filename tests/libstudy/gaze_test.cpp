@@ -43,7 +43,8 @@ class TwoEach final : public GazeSource {
   bool started_ = false;
 };
 
-/// A session of asking_protocol() whose participant answers `gaze_kept` on the consent page.
+/// A session of asking_protocol(). `gaze_kept`: answer to the question whether gaze may be recorded; 1 yes, 0
+/// no.
 struct Asked : test::OneSession {
   explicit Asked(int gaze_kept, const Protocol& asking = test::asking_protocol()) : OneSession(asking) {
     person.says[gaze_question] = test::score(gaze_kept);

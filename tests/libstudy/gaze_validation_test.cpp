@@ -50,8 +50,8 @@ TEST(GazeQuality, OfTooFewSamplesIsNotKnown) {
   EXPECT_FALSE(gaze_quality({&one, 1}).rms_s2s_deg);
 }
 
-/// A person whose gaze is measured `off` degrees to the right of each target. `off` depends on the number of
-/// the validation, from 1. From 90 on the samples are invalid.
+/// A person whose gaze is measured `off` degrees to the right of each target. `off` is a function of the
+/// number of the validation, which begins at 1. If it returns 90 or more, the samples are invalid.
 class OffTargets final : public GazeTargets {
  public:
   explicit OffTargets(std::function<double(int)> off) : off_(std::move(off)) {}

@@ -47,7 +47,7 @@ class Eyes final : public GazeSource {
   const Clock& clock_;
 };
 
-/// A session in a headset whose participant answers `gaze_kept` on the consent page.
+/// A session in a headset. `gaze_kept`: answer to the question whether gaze may be recorded; 1 yes, 0 no.
 struct Worn : test::OneSession {
   explicit Worn(int gaze_kept) : OneSession(test::asking_protocol()) {
     person.says[gaze_question] = test::score(gaze_kept);
@@ -71,7 +71,7 @@ TEST(HeadsetRecords, HoldEverySlotWithTheFrameThatWasOn) {
   EXPECT_EQ(worn.count("headset WHERE runtime = 'a runtime' AND right_height_px = 2200 AND hold = 'image' "
                        "AND left_fov_left_deg = -52 AND refresh_measured_hz = 89.5"),
             1);
-  // Two showings of .5 s; frames of 50 and 20 ms hold 5 and 2 slots.
+  // Two showings of .5 s, with display slots of 10 ms. Frames of 50 and of 20 ms last 5 and 2 slots.
   EXPECT_NEAR(static_cast<double>(worn.count("slot")), 100, 2);
   EXPECT_EQ(worn.count("slot WHERE frame_index IS NULL AND slot_index > 0"), 0) << "black before the first";
   EXPECT_EQ(worn.count("slot s JOIN frame f USING (presentation_id, frame_index) WHERE s.predicted_ns < "

@@ -107,7 +107,8 @@ TEST_F(HostileDatabases, AreRefusedByEachCommandAndNothingIsTouched) {
   EXPECT_GE(kinds.size(), 8u);
 }
 
-/// The messages name salvage as the remedy. It recovers all answers, from most files without their journal.
+/// The error messages name salvage as the remedy. Salvage recovers all answers, from most of these files even
+/// without their journal.
 TEST_F(HostileDatabases, SalvageMakesASoundStudyOfThem) {
   const auto truth = test::answers_of(sound);
   for (const test::HostileFile& file : test::hostile_files()) {
@@ -131,7 +132,7 @@ TEST_F(HostileDatabases, SalvageNamesWhatItLeavesOut) {
                                                              "changes of the table 'session'"));
 }
 
-/// For a foreign table the message also names the command that drops it.
+/// For a table that no study has, the message also names the command that drops it.
 TEST_F(HostileDatabases, WhatTheMessageSaysToDropIsDropped) {
   test::spoil_with(study, "CREATE TABLE kept AS SELECT * FROM response");
   const std::string message = message_of([&] { read_status(study); });
@@ -192,7 +193,8 @@ TEST_F(HostileDatabases, ALogWithoutItsDatabaseIsKept) {
   }
 }
 
-/// A backup beside a study has participants' data too, so a withdrawal names a foreign table in a backup.
+/// A backup beside a study has participants' data too, so a withdrawal names a backup with a table that no
+/// study has.
 TEST_F(HostileDatabases, ABackupWithForeignPartsIsNamedByAWithdrawal) {
   fs::copy_file(sound, study.string() + ".v7-2026-01-01T00:00:00Z.bak");
   test::spoil_with(study.string() + ".v7-2026-01-01T00:00:00Z.bak",

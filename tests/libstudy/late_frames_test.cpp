@@ -36,7 +36,7 @@ class LateDisplay final : public Display {
   std::int64_t frame_ = 0;
 };
 
-/// Only the pilot's setting (50, 0): one trial of 500 frames of 20 ms.
+/// The pilot with one setting, a constant 50 frames/s: one trial of 500 frames of 20 ms.
 Protocol one_constant_setting() {
   return parse_protocol(
       test::with_keys(test::shipped_text("ptpe_pilot"), {{"mean_fps", "[50]"}, {"sd_fps", "[0]"}}),

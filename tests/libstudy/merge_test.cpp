@@ -39,8 +39,8 @@ Lines select(const fs::path& path, const std::string& sql) {
   return lines;
 }
 
-/// Every row of every table, with row numbers. Labels are left out, because they depend on the target of a
-/// merge: it keeps its own (GivenLabels).
+/// Every row of every table, with row numbers. Public labels are left out, because the target of a merge
+/// keeps its own labels.
 Lines everything(const fs::path& path) {
   Lines all;
   for (const std::string& table :
@@ -208,7 +208,7 @@ TEST_F(Stations, CodesStayDistinctWhereStationsDoNotTellThemApart) {
   merge({path("north"), path("twin"), path("trap"), path("south"), path("none"), path("odd")}, path("all"));
   const Lines found = codes(path("all"));
   ASSERT_EQ(found.size(), 9u);
-  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // the person of station "west"
+  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // station "west" planned this code
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-room-3-b"), 1);
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-north"), 0);
   EXPECT_EQ(

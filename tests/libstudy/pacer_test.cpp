@@ -228,7 +228,7 @@ TEST(PlayNative, IsCutWhenItsLastFrameTakesTooLong) {
   for (const std::int64_t last_ms : {60, 61}) {
     Stage stage;
     for (std::int64_t i = 1; i < 3; ++i) stage.stimulus.cost_ns[i] = 40 * ms;
-    stage.stimulus.cost_ns[3] = last_ms * ms;  // 80 of 90 ms are over
+    stage.stimulus.cost_ns[3] = last_ms * ms;  // begins at 80 ms of a trial of 90 ms
     const auto played =
         study::play_native(0.09, stage.content, stage.stimulus, stage.display, stage.clock, 50 * ms, {});
     EXPECT_EQ(played.frames.size(), 3u);

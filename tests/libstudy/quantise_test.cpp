@@ -35,9 +35,10 @@ int hold_bound(const FpsSetting& setting, double refresh_hz) {
   return static_cast<int>(std::ceil(refresh_hz / slowest - 1e-9));
 }
 
-/// Brute force, independent of the search: dynamic programming over frames and periods. It finds the least or
-/// greatest sum of (refresh_hz / k - c)^2 over all lists of n holds k of 1 to `longest` periods that take
-/// `total` periods. Returns this sum / n, the extreme of variance + (arithmetic mean - c)^2.
+/// Brute force, independent of the search: dynamic programming over frames and refresh periods. A hold k is
+/// the number of periods for which a frame is shown. Finds the least or greatest sum of (refresh_hz / k -
+/// c)^2 over all lists of n holds of 1 to `longest` periods that take `total` periods. Returns this sum / n,
+/// the extreme of variance + (arithmetic mean - c)^2.
 double extreme_square(int n, int total, int longest, double refresh_hz, double c, bool largest) {
   const double worst = largest ? -1 : std::numeric_limits<double>::infinity();
   const auto spare = static_cast<std::size_t>(total - n);  // periods beyond one for each frame
@@ -59,9 +60,10 @@ double extreme_square(int n, int total, int longest, double refresh_hz, double c
   return best[spare] / n;
 }
 
-/// True if brute force rules out every list of holds for the setting. It computes the extremes for a grid of
-/// c. The least variance is at least the smallest of the least extremes minus (spacing / 2)^2. The greatest
-/// variance is at most the smallest of the greatest extremes.
+/// True if brute force rules out every list of holds for the setting. extreme_square() gives the least and
+/// the greatest variance + (mean - c)^2, here for each c of a grid. The least variance is at least the
+/// smallest of the least values minus (spacing / 2)^2. The greatest variance is at most the smallest of the
+/// greatest values.
 bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const int n = static_cast<int>(setting.mean * setting.duration_s);
   const double periods = refresh_hz * setting.duration_s;
@@ -105,9 +107,10 @@ struct Count {
 
 class PilotOnRefresh : public testing::TestWithParam<Count> {};
 
-// An exact setting is proved by its list of holds; any other setting is disproved by brute force. At 72 Hz
-// (50, 15) would be exact if fractions of frames were possible, with 31.43 of 500 frames held for 8 periods.
-// With whole frames the least SD is 15.35 frames/s, above the bound of 15.3.
+// A setting is exact if a list of holds (refresh periods for which each frame is shown) has its mean and SD.
+// Such a list proves it; any other setting is disproved by brute force. At 72 Hz the setting (50, 15), mean
+// and SD in frames/s, would be exact if fractions of frames were possible, with 31.43 of 500 frames held for
+// 8 periods. With whole frames the least SD is 15.35 frames/s, above the bound of 15.3.
 TEST_P(PilotOnRefresh, HasThisManyExactSettings) {
   const auto [refresh_hz, expected] = GetParam();
   int exact = 0;
@@ -142,7 +145,8 @@ TEST(Quantise, BruteForceRulesOutNothingThatExists) {
 }
 
 TEST(Quantise, BoundsHoldWhatTheBruteForceFinds) {
-  // The SD of every list of whole holds lies within the bounds, which hold for any distribution of holds.
+  // The bounds are for any distribution of holds (refresh periods per frame), also with fractions of frames.
+  // So the SD of every list of holds of whole frames must lie within them.
   study::HoldTarget target;
   target.refresh_hz = 60;
   target.longest = 5;

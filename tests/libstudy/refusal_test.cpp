@@ -177,7 +177,7 @@ TEST(Refusal, InAMergeNamesNoExportsOfAPersonWhoseGazeStays) {
   export_csv(path, folder / "csv", {.words = false, .gaze = true});
   EXPECT_THAT(merge({other}, path).beside.left, IsEmpty());
   EXPECT_EQ(recorded_of(path, "P01").size(), 6u);
-  // A refusal deletes the gaze before it also where gaze is allowed again.
+  // The refusal deletes all gaze recorded before it, although the person then allows gaze again.
   change_permissions(other, "P01", {.gaze = false, .sharing = {}});
   change_permissions(other, "P01", {.gaze = true, .sharing = {}});
   EXPECT_THAT(merge({other}, path).beside.left, ElementsAre(HasSubstr("csv on ")));

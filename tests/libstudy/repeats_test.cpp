@@ -183,7 +183,7 @@ TEST(Repeats, ThreeCutsAreNoReasonToPause) {
 TEST(Repeats, ThePauseLastsUntilTheExperimenterGoesOn) {
   Flashing one;
   std::vector<Trouble> told;
-  int held = -1;  // remaining calls while the experimenter holds the session
+  int held = -1;  // requests left in the experimenter's pause; -1: no pause yet
   SessionHooks hooks = one.cut_by(CutCause::Rate, 100);
   hooks.request = [&, cut = hooks.request]() -> Request {
     if (held > 0 && --held > 0) return Request::Pause;

@@ -186,8 +186,10 @@ TEST(FrameOrder, LagOneOfKnownLists) {
 }
 
 TEST(TruncatedNormal, TendsToItsLimits) {
-  // Not truncated: a normal distribution around -cut. Its quartiles lie 0.674489750196 standard deviations
-  // from the mean.
+  // Arguments: cut, width, n. Returns the distances from `cut` of n quantiles of a standard normal
+  // distribution between cut and cut + width.
+  // Hardly truncated (cut = -12): a normal distribution around -cut. Its quartiles lie 0.674489750196
+  // standard deviations from the mean.
   const auto bell = study::truncated_normal_strata(-12, INFINITY, 2);
   EXPECT_NEAR(bell[0], 12 - 0.6744897501960817, 1e-12);
   EXPECT_NEAR(bell[1], 12 + 0.6744897501960817, 1e-12);

@@ -108,7 +108,7 @@ TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
   bool wished = false;
   SessionHooks hooks;
   hooks.request = [&] {
-    // During the rest between the two questions of the first trial.
+    // The experimenter cuts the trial during the rest between the two questions of the first trial.
     const bool now = !wished && one.person.seen.size() > 1 && one.person.seen.back() == "rest 9";
     wished = wished || now;
     return now ? Request(CutCause::Experimenter) : Request::GoOn;

@@ -76,7 +76,7 @@ TEST(StationNumber, ChangesTheSeedAndWithoutOneNothingChanges) {
   EXPECT_EQ(seeds.size(), 6u);
 }
 
-/// P01 to P06 of Task 1, as vip-study run plans them.
+/// Plans six people of Task 1 as vip-study run does, with the codes P(100 + from) and following.
 void record_six(const fs::path& path, const std::string& station, int from = 1) {
   const Protocol protocol = test::shipped("task1");
   const auto number = parse_station_number(station);

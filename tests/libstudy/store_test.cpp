@@ -251,7 +251,7 @@ TEST(Store, WhatNobodyMeasuredOfAFrameIsEmpty) {
   const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
   auto frames = test::frames(0, 2);
   frames[0].facts = {};
-  frames[1].facts.tolerance->mu_fps.reset();  // as if tau was given
+  frames[1].facts.tolerance->mu_fps.reset();  // as if the tolerance tau was set, not computed
   frames[1].facts.tolerance->delta_fps.reset();
   store.add_frames(id, 0, frames);
   sqlite::Connection look(folder / "study.db", Open::Read);

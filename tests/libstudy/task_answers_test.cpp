@@ -308,7 +308,8 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
 }
 
-// For a session of an earlier version, the angles are not known, before and after the upgrade.
+// The camera's angle and the visual angle of a session of an earlier version are not known, neither before
+// nor after the upgrade.
 TEST(TaskAnswers, AnEarlierVersionsAnglesAreNotKnown) {
   const test::TemporaryFolder folder;
   test::write_version_1(folder / "old.db");

@@ -1,5 +1,5 @@
 #pragma once
-/// The trials of a study as the analyses see them.
+/// All planned trials of a study in one list, read by read_tasks() as for an analysis.
 
 #include <filesystem>
 #include <string>

@@ -77,7 +77,7 @@ TEST(WriterLock, ManyFirstStartsAtOnceLoseNothing) {
       }
     }
     const bool overlap =
-        round % 2 == 0;  // the holder keeps it until all have tried; otherwise only as long as needed
+        round % 2 == 0;  // true: the process that gets the database keeps it until all have tried
     if (!overlap) ::close(release[1]);
     ::close(gate[1]);  // starts all processes
     ::close(tried[1]);

@@ -61,7 +61,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
   }
 
-  /// Starts a display of 20 Hz, slow enough for a busy machine.
+  /// Opens the headset's display at 20 Hz, so slow that a busy machine misses no slots.
   study::HeadsetDisplay& start(const std::string& profile = "") {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
     display_.emplace(study::SlotDrive::Thread,
@@ -105,7 +105,8 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     return {static_cast<int>(value >> 16 & 255), static_cast<int>(value >> 8 & 255),
             static_cast<int>(value & 255)};
   }
-  /// Runs slots until this place has the colour, for at most 10 s. Returns the last colour.
+  /// Runs the headset's frame slots until the mirror shows `wanted` at (x, y), for at most 10 s. Returns the
+  /// last colour there.
   Colour comes_to(const Colour& wanted, double x, double y) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     Colour found = pixel(x, y);
