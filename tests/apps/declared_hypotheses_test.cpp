@@ -109,7 +109,7 @@ TEST(DeclaredHypotheses, WhatDoesNotFitTheProtocolIsRefusedAtItsPlace) {
          "different people see the two conditions");
   expect("hitch = \"none\"}", "content = \"dam\"}", "names other factors");
   EXPECT_THAT(refused(planted + planted, "x", "x", protocol), HasSubstr("is the id of another hypothesis"));
-  // Without a protocol the names are not checked.
+  // Without a protocol, names of factors and levels are not checked.
   EXPECT_EQ(plan_of(planted, nullptr).hypotheses.size(), 1u);
 }
 

@@ -261,7 +261,7 @@ TEST(FactorStudyE2e, GoesFromSimulatedPeopleToThePage) {
   EXPECT_THAT(late.out, HasSubstr("not preregistered: the bundle, frozen"));
   EXPECT_EQ(Json::parse(text_in(folder / "r.json")).at("hypotheses").at(0).at("status"), "declared");
 
-  // vip-stats report says that this hypothesis lacks the key that the report needs.
+  // vip-stats report says that the plan's hypothesis lacks the key task, which the report needs.
   const auto report =
       typed("vip-stats report " + at("s.db") + " --json " + at("old.json") + " --plan " + at("plan.toml"));
   ASSERT_EQ(report.exit_code, 0) << report.err;

@@ -94,7 +94,7 @@ std::vector<sim::RenderParticle> particles_on(const sim::VisibleBox& box) {
 class FramingGl : public ::testing::Test {
  protected:
   struct Seen {
-    bool any = false, edge = false;  ///< among the picture's pixels that show fluid
+    bool any = false, edge = false;  ///< whether pixels show fluid, and whether some at the edge do
   };
   /// Draws the boxes that must be visible, as balls on their surfaces.
   Seen draw(const sim::Scene& scene, const sim::View& view) {

@@ -176,7 +176,8 @@ TEST(HeadsetWatch, ACallThatComesBackIsDone) {
 TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
   std::promise<void> freed;
   const auto wait = freed.get_future().share();
-  // The future is ready once the thread has destroyed the call, whether or not the call has begun.
+  // `let_go` is ready once the thread has destroyed the function that it ran, and so `held`, whether or not
+  // the function has begun.
   auto held = std::make_shared<std::promise<void>>();
   const auto let_go = held->get_future();
   {

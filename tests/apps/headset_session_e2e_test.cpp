@@ -47,8 +47,8 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 60); }
 
-  /// The pilot's protocol with these means and standard deviations. It is played although some are
-  /// approximate.
+  /// The pilot's protocol with these means and standard deviations of the frame rate. It is played although
+  /// the display can show some of them only approximately.
   std::string pilot(const std::string& means, const std::string& sds) {
     base::write_file_atomically(
         folder_ / "pilot.toml",
@@ -109,7 +109,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     EXPECT_GT(black_frames_after(calls(), "xrBeginSession"), 50);
   }
 
-  /// A wait that hangs ends the program, and nothing is lost.
+  /// A call of xrWaitFrame that hangs ends the program, and nothing is lost.
   void hang(bool real) {
     const auto ended =
         real ? real_session("at=115:hang/60") : session("at=850:hang/60", pilot("[10, 30]", "[0]"), "2");
@@ -215,7 +215,7 @@ TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) 
   }
 }
 
-/// Slow tests: the runtime announces the loss of the session beforehand, or a wait hangs in real time.
+/// Slow tests: the runtime announces the loss of the session beforehand, or xrWaitFrame hangs in real time.
 class HeadsetSessionSlow : public HeadsetSessionE2e {};
 
 TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewInRealTime) { lose_session_in_real_time("lost_now"); }

@@ -164,7 +164,8 @@ TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
   EXPECT_THAT(study::report::results_page(json), HasSubstr("unknown, "));
 }
 
-// The tests of the hypotheses equal those in the results of each pair.
+// The tests of H1 then equal the mixed model's results in `comparisons`. The key `paired` of each hypothesis
+// has the paired tests of the same data.
 TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
   const auto json = results_of(with_dropout(12), stats::ScoreTests::Mixed);
   EXPECT_EQ(json.at("plan").at("tests"), "mixed");

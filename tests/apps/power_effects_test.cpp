@@ -84,7 +84,8 @@ TEST(PowerEffects, TwoMethodsGiveTwoAnswersAndMorePower) {
   EXPECT_GT(two.value, one.value + 4 * (one.se + two.se));
 }
 
-/// The claim needs both tests. Holm corrects over all pairs of levels, also over the pair without "none".
+/// The claim needs two tests: of foam and of scene against none. Holm corrects over all pairs of levels, also
+/// over foam and scene.
 TEST(PowerEffects, EveryLevelIsHeldAgainstNone) {
   auto request = foam_power("[\"LoRes\"]", "[\"foam\", \"none\", \"scene\"]", 0.8, 300);
   request.plan.plan.decision = stats::DecisionRule::Holm;

@@ -29,7 +29,7 @@ class Process {
   /// `prepare` runs in the child before the program is loaded.
   explicit Process(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
     int out[2];
-    if (::pipe2(out, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+    if (::pipe2(out, O_CLOEXEC) != 0) throw std::runtime_error("no pipe for stdout; raise ulimit -n");
     err_ = std::tmpfile();
     pid_ = ::fork();
     if (pid_ == 0) {

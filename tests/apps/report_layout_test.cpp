@@ -91,7 +91,9 @@ TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
 /// Width of the picture whose id starts with `id`.
 double picture_width(const std::string& html, const std::string& id) {
   const auto at = html.find("aria-labelledby=\"" + id);
-  if (at == std::string::npos) throw base::Error(id, "no such picture", "");
+  if (at == std::string::npos)
+    throw base::Error(id, "no picture of the page has an id that starts so",
+                      "use the start of a picture's id");
   return std::stod(html.substr(html.rfind("viewBox=\"0 0 ", at) + 13));
 }
 

@@ -23,7 +23,7 @@ using ::testing::Not;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-/// A file for this method and n_*, with six projections.
+/// A setting file for this method and n_*, with six projections.
 std::string setting_text(sim::MethodKind method, std::int64_t n_star, double frames_per_s = 60) {
   auto out = test::measured_setting(sim::usual_setting("SingleDam", method, n_star));
   out.setting[sim::SolverKnob::Rate] = frames_per_s;
@@ -32,7 +32,7 @@ std::string setting_text(sim::MethodKind method, std::int64_t n_star, double fra
   return sim::format_setting_file(out);
 }
 
-/// The pilot, which shows HiRes at 32k and steps of 1/60 s.
+/// The pilot, which shows HiRes at 32k in steps of 1/60 s, with `from` replaced by `to`.
 study::Protocol protocol_of(const std::string& from = "name", const std::string& to = "name") {
   return study::parse_protocol(replaced(test::short_protocol("1"), from, to), "short.toml",
                                study::ProtocolUse::New);
@@ -145,7 +145,7 @@ TEST_F(SettingInStudyE2e, GoesFromTheFileToTheRecordToEveryExportAndToTheReport)
   const std::string sha256 = base::sha256_hex(text_), file = "setting_" + sha256.substr(0, 12) + ".toml";
   EXPECT_EQ(text_of("SELECT json_extract(options, '$.settings[0].text') FROM run"), text_);
   EXPECT_THAT(text_of("SELECT stimulus FROM session"), AllOf(HasSubstr(sha256), HasSubstr("iterations=6")));
-  // tau was given, so no frame has measured moments.
+  // tau follows from the file's beta, so no frame has measured moments of the frame rate.
   EXPECT_EQ(test::count_in(database_, "SELECT count(*) FROM frame WHERE mu_fps IS NOT NULL"), 0);
   EXPECT_GT(test::count_in(database_, "SELECT count(*) FROM frame WHERE beta BETWEEN 0.8999 AND 0.9001"), 0);
 

@@ -89,8 +89,8 @@ TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
     const Ended ended = run_shell(VIP_BIN_DIR "/" + line);
     EXPECT_EQ(ended.exit_code, 0) << ended.out;
   };
-  // The check of a pilot takes long because of its many schedules; docs/statistics.md quotes it, and that
-  // page is run.
+  // The check of a pilot takes long because of its many schedules. It is left to the test that runs the
+  // commands of docs/statistics.md, one of which is this check.
   if (!GetParam().protocol.starts_with("ptpe_pilot")) typed("vip-study check " + protocol);
   typed("vip-study run " + protocol + " --db " + database + " --observer " + GetParam().observer +
         " --seed 2 --participants " + std::to_string(people));

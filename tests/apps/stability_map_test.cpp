@@ -13,8 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Two cases and two methods: a limit that was found, a case that fails at its own numbers, and a case that
-/// is not for LoRes.
+/// Two cases and two methods: limits that were found, a case that fails already with its usual settings, and
+/// a case (S1) without a result for LoRes.
 measure::StabilityMap small_map() {
   measure::StabilityMap out{.cases = {"S1", "S9"},
                             .methods = {"LoRes", "Ours"},

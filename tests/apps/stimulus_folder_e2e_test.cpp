@@ -80,7 +80,7 @@ TEST_F(StimulusFolderE2e, MixesBakedAndLiveAndSaysWhatIsMissingAndHowToMakeIt) {
   EXPECT_EQ(count_in(database_, "SELECT count(DISTINCT presentation_id) FROM frame"), 3);
 }
 
-/// Particles by level, share solved and tau of each frame.
+/// Of each frame: content step, particles by level, share of particles that were solved, and tau.
 constexpr const char* frames =
     "SELECT format('%d %s %.9g %.9g', content_step, particles, active_fraction, tau_fps) FROM frame "
     "ORDER BY frame_index";
@@ -144,7 +144,7 @@ TEST_F(StimulusFolderE2e, ResumeTakesAMovedBakeByItsHashAndNoOther) {
     EXPECT_EQ(gone.exit_code, 1);
     EXPECT_THAT(gone.err, AllOf(HasSubstr(place + ": does not exist any more"), HasSubstr(hash),
                                 HasSubstr("vip-study resume --db " + database + " --stimulus PATH")));
-    // A bake with another hash.
+    // A bake whose hash differs from that of the bake with which the session began is refused.
     const std::string other = folder_ / "other.bake";
     const auto baked = run_program(
         {vip_study, "bake", scene_, "--method", "HiRes", "--n-star", "64", "--frames", "12", "--out", other});

@@ -92,7 +92,7 @@ class SweepWorkflowE2e : public test::TableTest {
       }
       ::usleep(5000);
     }
-    throw std::runtime_error("no worker was met:\n" + log());
+    throw std::runtime_error("no worker was stopped in a cell within five minutes; see the log:\n" + log());
   }
 
   /// A shard and when it was written.

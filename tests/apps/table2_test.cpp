@@ -21,7 +21,8 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
                             " --markdown " + path("t2.md") + " --svg " + path("figures"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto table = rows("t2.csv");
-  // Ours-TSp has a row with the given tau and one with the measured.
+  // Ours-TSp has two rows: one with a fixed tau, like every method, and one with tau from the measured frame
+  // times.
   ASSERT_EQ(table.size(), 6u);
   std::map<std::string, Row> by_method;
   for (const auto& row : table) {

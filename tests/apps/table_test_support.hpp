@@ -36,7 +36,7 @@ inline void make_quick_share(const std::filesystem::path& share) {
         << text.replace(at, usual.size(), "settle_frames = 4");
     changed = true;
   }
-  if (!changed) throw std::runtime_error("no shipped scene holds: " + usual);
+  if (!changed) throw std::runtime_error("data/scenes: no scene has " + usual + "; adapt make_quick_share()");
   for (const fs::path& folder : {scenes, fs::path("data"), fs::path()}) {
     for (const auto& entry : fs::directory_iterator(shipped / folder)) {
       const fs::path copy = share / folder / entry.path().filename();

@@ -28,7 +28,8 @@ inline int cell_of(const study::Protocol& protocol, const Trial& trial, const st
     if (what.scene == trial.scene && what.n_star == trial.n_star && what.method == method)
       return static_cast<int>(i);
   }
-  throw std::invalid_argument("the protocol shows no " + method + " in " + trial.scene);
+  throw std::invalid_argument("trial of " + trial.participant + ": the protocol shows no " + method + " in " +
+                              trial.scene + " at " + trial.n_star + "; use one of its cells");
 }
 
 /// Sessions by participant and visit, in the order of `trials`; each trial is a unit of the first block that

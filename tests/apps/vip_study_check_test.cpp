@@ -239,7 +239,7 @@ study::StepTimes steps_at(double fps, std::size_t steps = 60) {
   return {std::vector<double>(steps, 0.5 / fps), std::vector<double>(steps, 0.5 / fps)};
 }
 
-/// Each cell is measured separately.
+/// Measured step times for each cell of the protocol, all at `fps`.
 std::vector<study::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
   std::vector<study::MeasuredStimulus> out;
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {

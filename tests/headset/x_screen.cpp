@@ -29,7 +29,7 @@ XScreen::~XScreen() {
 void XScreen::start(const std::string& size) {
   const std::string mode = size + "x24";
   int told[2];
-  if (::pipe2(told, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  if (::pipe2(told, O_CLOEXEC) != 0) throw std::runtime_error("no pipe to Xvfb; raise ulimit -n");
   server_ = ::fork();
   if (server_ == 0) {
     ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
@@ -48,13 +48,15 @@ void XScreen::start(const std::string& size) {
 
 void XScreen::make_context() {
   Display* display = XOpenDisplay(name_.c_str());
-  if (!display) throw std::runtime_error("no X display");
+  if (!display)
+    throw std::runtime_error("Xvfb: its display " + name_ + " cannot be opened; run the test again");
   binding_.type = XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR;
   binding_.xDisplay = display;
   const int wanted[] = {GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT, 0};
   int count = 0;
   GLXFBConfig* configs = glXChooseFBConfig(display, DefaultScreen(display), wanted, &count);
-  if (!configs || count == 0) throw std::runtime_error("no configuration of GLX");
+  if (!configs || count == 0)
+    throw std::runtime_error("Xvfb: no GLX configuration with pbuffers; install libgl1-mesa-dri");
   binding_.glxFBConfig = configs[0];
   XFree(configs);
   int visual = 0;
@@ -65,7 +67,7 @@ void XScreen::make_context() {
   const int version[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 4, GLX_CONTEXT_MINOR_VERSION_ARB, 5, 0};
   binding_.glxContext = glXCreateContextAttribsARB(display, binding_.glxFBConfig, nullptr, 1, version);
   if (!binding_.glxContext || !glXMakeCurrent(display, binding_.glxDrawable, binding_.glxContext))
-    throw std::runtime_error("no OpenGL 4.5 on the X display");
+    throw std::runtime_error("Xvfb: no OpenGL 4.5; install libgl1-mesa-dri");
 }
 
 }  // namespace simulated

@@ -27,7 +27,7 @@ class Browser {
  public:
   explicit Browser(const fs::path& path) {
     int ready[2];
-    if (::pipe(ready) != 0) throw std::runtime_error("pipe");
+    if (::pipe(ready) != 0) throw std::runtime_error("no pipe; raise ulimit -n");
     process_ = ::fork();
     if (process_ == 0) {
       Connection database(path, Open::Write);

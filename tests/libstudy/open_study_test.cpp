@@ -1,4 +1,4 @@
-/// Reading a database whose journal has more or other records.
+/// Reading a database whose journal of answers has records that the database lacks or has otherwise.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,7 +132,7 @@ TEST_F(OpeningToRead, OfABackupThatWasPutBackObeysARefusalMadeSince) {
   EXPECT_THAT(gaze_seen(), ElementsAre("P02"));
 }
 
-/// The command is killed between the write of the journal's line and the commit.
+/// A command that changes permissions is killed after it wrote the journal's line and before the commit.
 TEST_F(OpeningToRead, SeesACommitThatWasCutShort) {
   const std::string before = test::bytes_of(path_), journal = test::bytes_of(journal_beside(path_));
   change_permissions(path_, "P01", {.gaze = false, .sharing = false});
