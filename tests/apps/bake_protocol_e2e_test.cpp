@@ -199,7 +199,8 @@ TEST_F(BakeProtocolE2e, WhatItIsSaidToTakeIsEnough) {
     const sim::BakeReader bake(fs::path(out_) / name);
     const auto& h = bake.header();
     const auto particles = sim::particle_count(sim::parse_method(h.method), h.n_star);
-    // In such a short file the header and index are as large as the frames.
+    // 10,000 bytes are allowed for the header and index, which in such a short file are as large as the
+    // frames.
     EXPECT_LT(bake.file_bytes(),
               static_cast<std::uint64_t>(h.frame_count * (6 * particles + 64 * 36)) + 10'000)
         << name;

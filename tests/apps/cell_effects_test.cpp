@@ -22,7 +22,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// protocols/foam.toml with these levels of the factor effects, these sets of effects, and this scene.
+/// protocols/foam.toml with this line as its list of levels of effects, these sets of effects, and this
+/// scene.
 study::Protocol protocol_with(const std::string& effects, const std::string& sets,
                               const std::string& scene = "sea_spray") {
   return study::parse_protocol(test::replaced(test::foam_text(effects, sets), "sea_spray", scene), "p.toml");

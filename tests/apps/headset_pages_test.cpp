@@ -28,7 +28,7 @@ study::HeadsetPose head(double yaw_deg, double pitch_deg) {
   const double yaw = 0.5 * yaw_deg * degree, pitch = 0.5 * pitch_deg * degree;
   study::HeadsetPose pose;
   pose.place_m = {0.3F, 1.6F, -0.2F};
-  // First about the vertical axis, then about the head's own.
+  // The yaw about the vertical axis, then the pitch about the turned head's x axis.
   pose.turn = {static_cast<float>(std::cos(yaw) * std::sin(pitch)),
                static_cast<float>(std::sin(yaw) * std::cos(pitch)),
                static_cast<float>(-std::sin(yaw) * std::sin(pitch)),

@@ -242,7 +242,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeMadeAnewIsToldAndContinued) {
 }
 
 TEST_F(HeadsetSessionE2e, AWaitThatHangsEndsTheProgramAndNothingIsLost) { hang(false); }
-/// In real time the session's own waits take time as well.
+/// As the test before it, but on the real clock, on which the session's waits for its slots take time too.
 TEST_F(HeadsetSessionSlow, AWaitThatHangsInRealTimeEndsTheProgramAndNothingIsLost) { hang(true); }
 
 /// The stimulus is on from frame 283 to frame 463; the event is scheduled at frame 350 or 150.

@@ -1,5 +1,5 @@
-/// HeadsetSession as a display uses it, but in the test's own process: held pictures, pages, a frame thread,
-/// unchanged GL state.
+/// HeadsetSession, which the tests call directly in place of a HeadsetDisplay: held pictures, pages, a frame
+/// thread, unchanged GL state.
 #include "libstudy/headset/headset_session.hpp"
 
 #include <epoxy/egl.h>

@@ -184,7 +184,7 @@ TEST(HeatBakeGl, ItsDescriptionTellsWhatIsPainted) {
 TEST(HeatBake, ThatCannotBePaintedAsWantedIsADeparture) {
   NEEDS_EFFECTS;
   auto old = study::header_of(order_with(false));
-  old.reference_k.reset();  // like formats before 5
+  old.reference_k.reset();  // as in bakes of formats before 5
   EXPECT_THAT(study::fluid_departures(old, study::header_of(order_with(true))),
               Contains("no temperatures instead of temperatures to paint (bakes before format 5 kept none)"));
   EXPECT_THAT(study::fluid_departures(old, study::header_of(order_with(false))), IsEmpty());

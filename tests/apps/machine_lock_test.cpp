@@ -29,7 +29,7 @@ class MachineLockTest : public ::testing::Test {
   const std::filesystem::path file_ = folder_ / "vip-bench.lock";
 };
 
-/// Takes the lock as another program would.
+/// Locks the file through a descriptor of its own, as another program would.
 class Other {
  public:
   explicit Other(const std::filesystem::path& file) : fd_(::open(file.c_str(), O_RDONLY | O_CREAT, 0644)) {}

@@ -79,7 +79,8 @@ TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {
   const auto protocol = pilot_with("start_frame", "7");
   SlowStage stage([](std::int64_t step) { return 1e-5 * static_cast<double>(step); }, 0.004);
   const study::StepTimes times = measured(protocol, stage);
-  // (50, 20) for 10 s: 500 frames; a session makes the first one before the trial.
+  // The longest trial has 500 frames: a mean of 50 frames/s for 10 s. The measurement includes the first
+  // frame, which a session makes before the trial.
   ASSERT_EQ(times.compute_s.size(), 500u);
   EXPECT_EQ(times.draw_s.size(), 500u);
   EXPECT_THAT(stage.starts, ElementsAre(7));

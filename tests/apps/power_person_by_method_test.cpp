@@ -29,8 +29,8 @@ study::PowerRequest request_for(const std::string& world, int studies) {
   return request;
 }
 
-/// Correlation over people between the difference of two methods at one number of particles and that at the
-/// other.
+/// Correlation over people between method 0's lead over method 1 at one number of particles and the same lead
+/// at the other number.
 double correlation_between_n_stars(double person_by_method) {
   auto request = request_for("null", 1);
   request.answers = study::AnswerScale::Continuous;

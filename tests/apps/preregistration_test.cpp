@@ -181,7 +181,7 @@ TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   EXPECT_TRUE(before.at("holds").get<bool>()) << before.dump(2);
   EXPECT_EQ(before.at("times")[0].at("text"),
             "The bundle was frozen before the first answer of Task 1, given 2999-01-01T00:00:00Z.");
-  // Within the same second the order cannot be known.
+  // If both times are in the same second, their order is not known: the bundle counts as late.
   for (const std::string& first : {std::string("2001-01-01T00:00:00Z"), frozen}) {
     const auto after = check_with_first_answer(bundle, first);
     EXPECT_EQ(after.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));

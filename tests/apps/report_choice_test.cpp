@@ -58,7 +58,7 @@ study::TaskProtocol mended(study::TaskProtocol protocol, char digit) {
   return protocol;
 }
 
-/// The pilot with its own second question, on another scale.
+/// The pilot with a second question, smoothness, on a scale of 0 to 3.
 study::TaskProtocol pilot_of_two_questions() {
   auto out = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 8, 7);
   out.questions.push_back(made_study::scale("smoothness", 0, 3));

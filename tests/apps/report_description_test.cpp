@@ -204,8 +204,8 @@ TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
   EXPECT_GT(std::stod(html.substr(box + 13)) - room("preference", "translate(") - 606, needed);
 }
 
-// In an earlier version the solver's row had the direct estimate's own interval, but the sentence above it
-// the wider one.
+// In an earlier version the solver's row of the table had the interval of the direct estimate, while the
+// sentence above the table had the wider interval that is for the solver.
 TEST(PageOfTheReport, TheSolversRowHasTheSolversInterval) {
   const auto from = page().find("For the solver</strong>");
   ASSERT_NE(from, std::string::npos);

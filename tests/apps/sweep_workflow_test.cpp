@@ -35,7 +35,7 @@ class SweepWorkflowE2e : public test::TableTest {
              "/scripts/sweep.smk --cores 2 " + arguments + " bin=" VIP_BIN_DIR " out=out >>log 2>&1"},
         [] { ::setsid(); });
   }
-  /// Settled states and locks are those of this test alone.
+  /// Environment without stored settled states, and with locks and caches in this test's folder.
   std::string environment() const {
     const std::string own = folder.path().string();
     return "env -u DISPLAY OMP_NUM_THREADS=2 VIP_CACHE_DIR= VIP_LOCK_DIR=" + own + " XDG_CACHE_HOME=" + own +

@@ -31,7 +31,7 @@ TEST(Table1Gazes, AreTheScenesOwnNearestInTimeFirst) {
   // The gaze starts its jump to the point of frame 60 in that frame: in frame 60 it still rests on the
   // previous point.
   EXPECT_EQ(measure::gaze_points(dam, 60, 2), (Points{dam.gaze[0].point_m, dam.gaze[1].point_m}));
-  // Faucet lists one point twice.
+  // Faucet lists one of its gaze points twice, so it has only three different ones.
   const auto faucet = sim::read_scene("data/scenes/faucet.toml");
   for (const int frame : faucet.checkpoints) {
     const auto points = measure::gaze_points(faucet, frame, 3);

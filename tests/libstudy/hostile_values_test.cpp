@@ -61,7 +61,8 @@ std::vector<test::SoundText> sound_protocols() {
   return out;
 }
 
-/// What a program does with a protocol that was accepted.
+/// Does with an accepted protocol what programs do: assigns a slot, makes a plan, and schedules the frames of
+/// the first and the last cell if they are fewer than 5000.
 void use(const study::Protocol& protocol) {
   study::next_slot(protocol, {});
   study::make_plan(protocol, "P01", 7, 0);

@@ -174,7 +174,7 @@ class Histories {
     note(stations_[station], granted);
   }
 
-  /// Writes an answer like Store::answer().
+  /// Writes an answer about gaze to the first database, with the records that Store::answer() writes.
   void answer_page() {
     const bool granted = draw(2) == 1;
     Connection& database = *stations_[0].database;

@@ -226,7 +226,8 @@ TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
   EXPECT_THROW(one.run(), base::Error);
 }
 
-/// A frame's row has the facts that the fluid reports, and no other. The timing here is "table2".
+/// A frame's row has the facts that the fluid reports, and null for all other facts. Task 2 has the timing
+/// "table2".
 TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
   class Accounting final : public Stimulus {
    public:

@@ -1,5 +1,5 @@
-/// Stations that record one study: their shares of the assignment, and the balance of the whole after a
-/// merge.
+/// Stations that record one study: the shares of the assignment that they get, and the balance of the merged
+/// study.
 #include "libstudy/design/station.hpp"
 
 #include <gmock/gmock.h>

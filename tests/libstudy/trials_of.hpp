@@ -1,5 +1,6 @@
 #pragma once
-/// All planned trials of a study in one list, read by read_tasks() as for an analysis.
+/// All planned trials of a study in one list, read from the database by read_tasks(), the reader of the
+/// analyses.
 
 #include <filesystem>
 #include <string>
