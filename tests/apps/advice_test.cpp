@@ -105,8 +105,8 @@ class Programs {
   std::map<std::string, Words> options_;
 };
 
-/// Commands that print texts of a source. Advice that several commands print must be right for each of them;
-/// in other sources it must be right for one of the program's commands.
+/// Sources, by the start of their path, and the commands that print their texts. Advice in such a source must
+/// be right for each of these commands; advice in any other source, for one of the program's commands.
 struct Place {
   std::string path;  ///< start of the path, from the project's root
   std::vector<std::string> commands;

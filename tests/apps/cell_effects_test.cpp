@@ -1,4 +1,4 @@
-/// Levels of the factor effects as effects of a scene.
+/// How the levels of the factor "effects" change the effects of the scene that a cell shows.
 
 #include "libstudy/stimulus/bakes/cell_effects.hpp"
 

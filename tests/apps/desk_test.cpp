@@ -124,7 +124,7 @@ TEST(Refresh, ScreensOfTelevisionRatesCountAsWholeOnes) {
 TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
   EXPECT_FALSE(study::judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: the swap does not wait
   EXPECT_FALSE(study::judge_swaps(swaps(8e6, 120, 3e6), 60).in_effect);  // irregular, like drawing times
-  EXPECT_FALSE(study::judge_swaps(swaps(1e9 / 60, 5), 60).in_effect);    // too few
+  EXPECT_FALSE(study::judge_swaps(swaps(1e9 / 60, 5), 60).in_effect);    // too few swaps
   EXPECT_EQ(study::judge_swaps(swaps(3e5, 120), 60).nominal_hz, 0);
 }
 

@@ -20,7 +20,7 @@ using report_walk::Json;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Answers of people without a database.
+/// A study in memory, without a database: the protocol `text`, and people's answers to it.
 struct MadeStudy {
   study::TaskStudy study;
 
@@ -151,7 +151,7 @@ TEST(FactorStudy, DescribesEachCellOverParticipants) {
   EXPECT_EQ(cell.at("cell"), "hitch h100, content dam");
   EXPECT_EQ(cell.at("participants"), 10);
   EXPECT_EQ(cell.at("trials"), 50);
-  EXPECT_NEAR(cell.at("mean").get<double>(), 0.46, 1e-12);  // .2 .4 .6 .8 in turn
+  EXPECT_NEAR(cell.at("mean").get<double>(), 0.46, 1e-12);  // people's means: .2 .4 .6 .8 in turn
   EXPECT_EQ(cell.at("counts").at(1).at("n"), 23);
   EXPECT_EQ(made.results(declared("a", "{hitch = \"h100\"}", "against = 0.5\ntest = \"binomial\""))
                 .at("descriptives")

@@ -19,10 +19,10 @@ using ::testing::HasSubstr;
 std::string scene_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
 sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 
-/// The test bake's particles, which move by a frame with each step.
+/// The particles of the test's bake; each step moves them to the bake's next frame.
 class FakeSimulation final : public sim::Simulation {
  public:
-  /// `looks` receives all looks, unless it is null.
+  /// look() appends its argument to `looks`, unless that is null.
   explicit FakeSimulation(std::vector<sim::Looks>* looks = nullptr) : looks_(looks) {}
   bool look(const sim::Looks& looks) override {
     if (looks_) looks_->push_back(looks);

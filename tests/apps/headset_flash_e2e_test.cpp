@@ -20,7 +20,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 60); }
 
-  /// Two showings of half a second without black of their own, after a consent page.
+  /// Two showings of half a second after a consent page. The protocol asks for no black between them.
   test::Ended session(const std::string& profile, const std::string& gaze,
                       const std::string& clock = "virtual") {
     base::write_file_atomically(folder_ / "asking.toml", test::asking_at_60());
@@ -69,7 +69,7 @@ TEST_F(HeadsetFlashE2e, WhatGoesWrongAgainAndAgainIsShownFourTimesAtMostAndFlash
   };
   for (const auto& [bad, good, cause] :
        std::vector<Trouble>{{"focus/0", "focus/1", CutCause::Focus},
-                            // The headset's pictures stop before the session's state changes.
+                            // With shown/0 no pictures are wanted before the session reports its new state.
                             {"shown/0", "shown/1", CutCause::NotDrawn},
                             {"render/0", "render/1", CutCause::NotDrawn},
                             {"orientation/0", "orientation/1", CutCause::Pose},

@@ -149,7 +149,7 @@ TEST_F(HeadsetPersonE2e, ALineAndAReactionAreAnsweredByHandAndALineByTheEyes) {
 }
 
 TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
-  // Left moves to the last choice, select takes it, and select goes on.
+  // The stick to the left moves to the last choice, a press of select chooses it, and the next press goes on.
   std::string script;
   for (int frame = 0; frame < most_frames; frame += 60) {
     for (const auto& [later, what] : std::vector<std::pair<int, std::string>>{{5, "thumb_x/-0.9"},

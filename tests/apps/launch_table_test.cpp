@@ -26,7 +26,7 @@ std::unique_ptr<sim::Simulation> few(sim::MethodKind method) {
   return sim::make_simulation(sim::read_scene(base::resource("data/scenes/peers_dam.toml")), options);
 }
 
-/// Names of the launches in a few frames.
+/// Labels of the passes that are launched in 12 frames.
 std::set<std::string> labels_of(sim::MethodKind method) {
   const auto fluid = few(method);
   fluid->profile_launches(true);
@@ -37,8 +37,8 @@ std::set<std::string> labels_of(sim::MethodKind method) {
   return out;
 }
 
-// The table finds a pass by its label, so a renamed pass would lose its lower bound of bytes without an
-// error.
+// The table pass_bytes() finds a pass by its label, so a renamed pass would lose its lower bound of bytes
+// without an error.
 TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
   auto launched = labels_of(sim::MethodKind::HiRes);
   EXPECT_FALSE(launched.contains("density beside fresh"));

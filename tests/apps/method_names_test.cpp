@@ -1,4 +1,4 @@
-/// Lists that repeat the names of the methods.
+/// Lists that repeat the names of the solver's methods, in protocols and pages, must name the same methods.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

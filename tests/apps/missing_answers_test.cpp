@@ -1,5 +1,5 @@
-/// Task 1 with dropout: the planned answers, the people of each pair, the mixed model and tipping points in
-/// the results.
+/// Task 1 with dropout, in the results: planned answers, the people in each comparison of two methods, the
+/// mixed model and tipping points.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -104,7 +104,7 @@ class PageFontsE2e : public ::testing::Test {
  protected:
   PageFontsE2e() {
     base::write_file_atomically(folder_ / "chinese.toml", asking("您对刚才看到的画面满意吗？"));
-    // A system that has only the usual fonts.
+    // A system whose only fonts are those of DejaVu.
     base::write_file_atomically(
         folder_ / "fonts.conf",
         "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig>"

@@ -76,7 +76,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_EQ(file.b_ci, fit.main().spread->b_ci);
   EXPECT_EQ(file.n_simulated, 16);
   ASSERT_EQ(file.band.size(), 5u);
-  const auto& last = json.at("bands").at(20);  // of level 4
+  const auto& last = json.at("bands").at(20);  // level 4 at delta = 20
   EXPECT_EQ(last.at("delta"), 20);
   EXPECT_EQ(last.at("solver_ci"), ordered_json(file.band[4].mu));
   EXPECT_LT(last.at("solver_ci")[0], last.at("solver_mu"));

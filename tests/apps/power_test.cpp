@@ -291,7 +291,8 @@ TEST(PowerPilot, PrecisionGrowsWithPeople) {
   EXPECT_EQ(*power.n_for_a, 24);
 }
 
-// The curve's score is chosen as in fit-ptpe and report: the option's, else the plan's, else the protocol's.
+// The score at which the curve is taken is chosen as in fit-ptpe and report: the option's, else the plan's,
+// else the protocol's.
 TEST(PowerPilot, TheCurveIsAtTheLevelOfThePlanOrTheProtocol) {
   auto request = request_for("protocols/ptpe_pilot.toml", {8}, 20);
   EXPECT_EQ(study::rated_level(request), 4);

@@ -242,7 +242,7 @@ TEST(Preregistration, AnotherMarginIsNamed) {
               HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
 }
 
-/// A bundle as written before plans had a decision rule: without its two keys.
+/// A bundle as it was written before plans had a decision rule: without the two keys of the rule.
 void freeze_as_before(const fs::path& folder) {
   auto request = both_tasks();
   request.plan.decision = stats::DecisionRule::Holm;

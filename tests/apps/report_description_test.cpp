@@ -101,7 +101,7 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
 
 TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
   const auto study = made_study::task1(people);
-  std::map<std::string, int> wanted;  // counts of realism at 16k
+  std::map<std::string, int> wanted;  // counts of realism at 16k, by "method score"
   for (const auto& session : study.sessions)
     for (const auto& trial : session.trials)
       if (trial.first.what.n_star == "16k")
@@ -127,7 +127,7 @@ TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
 }
 
 TEST(DescriptionOfTheReport, MethodsByNStarAreDifferencesOfDifferences) {
-  std::map<std::string, std::map<std::string, double>> scores;  // participant, "n_star method"
+  std::map<std::string, std::map<std::string, double>> scores;  // by participant, then n_star and method
   for (const study::Json& mean : made().at("task1").at("participant_means"))
     scores[mean.at("participant")]
           [mean.at("n_star").get<std::string>() + mean.at("method").get<std::string>()] = mean.at("realism");
@@ -204,8 +204,8 @@ TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
   EXPECT_GT(std::stod(html.substr(box + 13)) - room("preference", "translate(") - 606, needed);
 }
 
-// In an earlier version the solver's row of the table had the interval of the direct estimate, while the
-// sentence above the table had the wider interval that is for the solver.
+// In an earlier version the solver's row had the interval of the direct estimate, while the sentence above it
+// had the wider interval that is for the solver.
 TEST(PageOfTheReport, TheSolversRowHasTheSolversInterval) {
   const auto from = page().find("For the solver</strong>");
   ASSERT_NE(from, std::string::npos);

@@ -1,4 +1,5 @@
-/// What the report's page states, with results for which it would be false.
+/// Each sentence of the report's page rests on a fact of the results, and is not printed where the fact does
+/// not hold.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

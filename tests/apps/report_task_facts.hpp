@@ -1,5 +1,6 @@
 #pragma once
-/// The facts on which the report's sentences about the parts of a study rest.
+/// The facts on which the report's sentences about the pilot, Task 1, Task 2, sickness, the hypotheses and
+/// the preregistration rest.
 
 #include "tests/apps/report_facts.hpp"
 

@@ -33,7 +33,7 @@ inline int decimals(const std::string& text) {
   return n;
 }
 
-/// Formats formulas in the results' texts as the page does.
+/// Replaces the written symbols in the results' texts (n_*, mu, delta, +-) by the signs that the page prints.
 inline std::string as_set(std::string text) {
   const auto letter = [&](std::size_t at) {
     return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at]));

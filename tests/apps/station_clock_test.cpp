@@ -128,7 +128,8 @@ TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
 }
 
 TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
-  // In the first case the earlier rows are older than the bundle. In the second case both times are possible.
+  // Time of the first answer, and of earlier rows. First pair: the earlier rows are older than the bundle, so
+  // they tell nothing. Second pair: both times are possible.
   const std::pair<const char*, const char*> cases[] = {{"1969-12-31T23:00:00Z", "2025-01-01T00:00:00Z"},
                                                        {"2025-01-01T00:00:00Z", "2999-01-01T00:00:00Z"}};
   for (const auto& [told, not_before] : cases) {

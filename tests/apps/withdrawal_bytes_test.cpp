@@ -170,7 +170,7 @@ void succeeds(const std::vector<std::string>& arguments) {
   EXPECT_EQ(ended.exit_code, 0) << arguments[1] << ": " << ended.out << ended.err;
 }
 
-/// The station's people take part in a study of two tasks.
+/// The station's people take part in Task 2 and in asking_pairs(), both in one database.
 void write_station(const fs::path& path) {
   std::vector<std::string> run{
       vip_study, "run", "protocols/task2.toml", "--db", path, "--observer", "random", "--station", "north"};

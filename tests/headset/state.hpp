@@ -14,7 +14,7 @@
 
 namespace simulated {
 
-/// The session's OpenGL context, for either binding.
+/// The OpenGL context that the program gave to the session, by the EGL or the Xlib binding.
 struct Graphics {
   EGLDisplay egl_display = EGL_NO_DISPLAY;
   EGLConfig egl_config = nullptr;
@@ -49,7 +49,7 @@ struct Session {
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   bool running = false;
   bool exiting = false;  ///< enters EXITING after the session has ended
-  long lost_at = -1;     ///< frame from which every call fails
+  long lost_at = -1;     ///< frame from which every call of the session fails; -1: none
   long frames = 0;       ///< frames ended since xrBeginSession
   bool waited = false;   ///< a frame was waited for and has not begun
   bool begun = false;    ///< a frame has begun and not ended
@@ -74,7 +74,7 @@ struct Space {
   std::uint64_t session = 0;
   XrReferenceSpaceType type = XR_REFERENCE_SPACE_TYPE_LOCAL;
   Pose offset;
-  std::uint64_t action = 0;  ///< for a space of an action
+  std::uint64_t action = 0;  ///< of an action space, the action's number; else 0
   std::string subaction;
 };
 
@@ -138,7 +138,7 @@ struct Runtime {
   Clock clock;
   std::uint64_t next_handle = 1;
   long frames = 0;              ///< frames waited for in this process
-  long instance_lost_at = -1;   ///< frame from which every call fails
+  long instance_lost_at = -1;   ///< frame from which every call of the instance fails; -1: none
   bool asked_graphics = false;  ///< xrGetOpenGLGraphicsRequirementsKHR was called
   bool asked_system = false;
   XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state towards which a running session moves

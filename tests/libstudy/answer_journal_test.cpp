@@ -219,7 +219,8 @@ TEST(AnswerJournal, IsHealedWhereverItsLastLinesAreTorn) {
   EXPECT_EQ(test::lines_of(path), truth);
 }
 
-// A power cut may lose one unsynced sector of a file and keep a later one.
+// A power cut may lose one unsynced sector of the journal and keep a later one, so one of the last lines may
+// be lost.
 TEST(AnswerJournal, LastRowsOfWhichALineIsLostAreNotTakenOver) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder), file = journal_beside(path);

@@ -48,7 +48,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-/// Participants of one station; P02's note is the secret, and all have personal data.
+/// Writes a station's study with these participants. P02's note is the secret, and all have personal data.
 void write_station(const fs::path& path, const std::string& station, const std::vector<std::string>& people) {
   RunPlan run = test::run_plan(test::pairs(), people);
   for (SessionPlan& session : run.sessions) session.station = station;

@@ -279,7 +279,7 @@ TEST_F(Exports, FoldersMadeForFilesGoWhenNothingIsLeftInThem) {
   EXPECT_FALSE(fs::exists(folder / "a"));
   EXPECT_TRUE(fs::is_empty(folder / "theirs"));
   EXPECT_TRUE(fs::exists(folder / "c" / "my notes.txt"));
-  EXPECT_EQ(count("export"), 1);  // "c", deleted with a later withdrawal
+  EXPECT_EQ(count("export"), 1);  // "c" is left for a later withdrawal
 }
 
 TEST_F(Exports, ThatFailWriteNothingIntoTheRegister) {

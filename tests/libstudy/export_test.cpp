@@ -50,7 +50,7 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const std::string before = test::bytes_of(folder / "out" / "frames.csv");
   export_csv(database, folder / "out/");
   EXPECT_TRUE(test::bytes_of(folder / "out" / "frames.csv") == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // with the journal of answers
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // database, its journal, "out"
 }
 
 TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {

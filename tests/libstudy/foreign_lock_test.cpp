@@ -134,7 +134,8 @@ bool is_locked(const fs::path& path) {
   return status == 0;
 }
 
-// Beside a database of schema 1 lies a journal that records an empty file: the database holds nothing.
+// Beside a database of schema 1 lies a rollback journal that says that the file was empty, so the database
+// holds nothing.
 TEST(OwnLock, StaysWhenADatabaseThatHoldsNothingIsRefused) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "young.db";

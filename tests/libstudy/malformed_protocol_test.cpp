@@ -337,8 +337,8 @@ const Malformed obeyed[] = {
      "is in a block of kind stimulus", "in a block of kind consent"}};
 INSTANTIATE_TEST_SUITE_P(Obeyed, MalformedProtocol, testing::ValuesIn(obeyed));
 
-/// Earlier versions accepted these questions in other forms. A database may hold a protocol with such a
-/// question, and resuming and reading it must still work.
+/// Earlier versions accepted these questions in other forms, here as a scale. A database may hold a protocol
+/// with such a question, and resuming and reading it must still work.
 TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
   const std::string text = replaced(shipped_text(task1), gaze_box,
                                     "id = \"gaze_kept\"\nkind = \"scale\"\ntext = \"Look\"\nscale = [0, 1]");

@@ -320,7 +320,7 @@ TEST(DropoutObserver, LeavesWithItsProbabilityBeforeEachTrial) {
       }
     }
   }
-  EXPECT_NEAR(left / 10000.0, 0.2, 0.016);  // four standard deviations
+  EXPECT_NEAR(left / 10000.0, 0.2, 0.016);  // 0.016: four standard deviations
   EXPECT_EQ(score(*observer, shown(30, 5, 1, 1)), 3);
 }
 

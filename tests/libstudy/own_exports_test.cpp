@@ -30,7 +30,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// Sets $VIP_STATE_DIR for one test.
+/// Sets $VIP_STATE_DIR, where the installation lists the exports that it made, for one test.
 class StateAt {
  public:
   explicit StateAt(const fs::path& folder) : before_(std::getenv("VIP_STATE_DIR")) {

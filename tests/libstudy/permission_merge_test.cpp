@@ -1,4 +1,5 @@
-/// Permissions after the merge of copies that were used apart. They do not depend on the copies' clocks.
+/// Permissions after the merge of copies that were used apart. The merged permissions do not depend on the
+/// copies' clocks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

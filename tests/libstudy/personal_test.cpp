@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Expects that the closed file is refused after `change` was made to it.
+/// Expects that a file of personal data is refused after `change` was made to it while it was closed.
 template <class Change>
 void expect_refused(const Change& change, const std::string& words) {
   const test::TemporaryFolder folder;

@@ -238,7 +238,7 @@ struct Golden {
   const char* order;
   std::uint64_t seed;
   int slot;
-  const char* sha256;  // its first 16 digits
+  const char* sha256;  // of text_of(plan), the first 16 digits
 };
 
 class GoldenPlan : public testing::TestWithParam<Golden> {};

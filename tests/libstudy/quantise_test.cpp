@@ -83,7 +83,8 @@ bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   return least - spacing * spacing / 4 > top * top || most < floor * floor;
 }
 
-/// Checks the conditions of an exact list on the list itself.
+/// Checks that the list of holds has the setting's duration, number of frames, mean and SD, with no hold
+/// above the bounds.
 void expect_exact_list(const FpsSetting& setting, const study::RefreshVerdict& verdict, double refresh_hz) {
   ASSERT_EQ(verdict.holds.size(), static_cast<std::size_t>(setting.mean * setting.duration_s));
   EXPECT_EQ(std::accumulate(verdict.holds.begin(), verdict.holds.end(), 0), refresh_hz * setting.duration_s);

@@ -174,7 +174,8 @@ TEST(FrameOrder, TraceGivesItsRanks) {
   rules.trace_rates = {30, 10, 50, 20, 40};
   const auto rates = study::ordered({1, 2, 3, 4, 5}, rules, 1);
   EXPECT_EQ(rates, (std::vector<double>{3, 1, 5, 2, 4}));
-  // Twice as many frames: the same places of both halves are above the median, but for the first place.
+  // For ten frames the trace of five repeats: the same frames of both halves have rates above the median,
+  // except the first, whose rate is the trace's median.
   const auto longer = study::ordered({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, rules, 1);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ((longer[i] > 5.5), (longer[i + 5] > 5.5) || i == 0);
 }

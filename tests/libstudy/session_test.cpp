@@ -101,7 +101,7 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   sqlite::Connection look(folder / "cut.db", Open::Read);
   EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 44);  // consent is an answer too
   EXPECT_EQ(look.integer("SELECT count(*) FROM presentation WHERE state = 'played'"), 42);
-  // Frames of cut showings stay, and a trial is shown again only while it has no answer.
+  // Frames of cut showings stay in the database, and a trial is shown again only while it has no answer.
   const auto cut = look.integer("SELECT count(*) FROM presentation WHERE state = 'interrupted'");
   EXPECT_GT(cut, 5);
   EXPECT_LE(cut, stops);  // a stop in a pause interrupts no showing
@@ -136,8 +136,8 @@ seconds = 4
 TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   OneSession one(paced_pairs());
   one.run();
-  // Each stimulus is preceded by its word and half a second of black; the protocol's black between the
-  // stimuli keeps its full length.
+  // Each stimulus is preceded by the word "first" or "second" and half a second of black; the protocol's
+  // black between the stimuli keeps its full length.
   std::vector<std::string> trial{"first 1",   "black 0.5",      "black 1", "second 1",
                                  "black 0.5", "ask preference", "rest 9",  "ask ease"};
   std::vector<std::string> expected{"ask age games"};
