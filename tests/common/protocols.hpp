@@ -68,7 +68,8 @@ inline std::string without(std::string text, std::initializer_list<std::string> 
   return text;
 }
 
-/// The shipped pilot with six settings, without the pause before them, and with trials of `duration_s`.
+/// The shipped pilot with trials of `duration_s` at six settings (two means by three deviations of the frame
+/// rate), and without the black screen of 3 s before each trial.
 inline std::string short_protocol(const std::string& duration_s) {
   return replaced(with_keys(shipped_text("ptpe_pilot"), {{"name", "\"short\""},
                                                          {"mean_fps", "[20, 50]"},

@@ -11,8 +11,8 @@ namespace faults {
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
-/// Results of sessions: each session's state, its units, answers and last showings. Equal for a session that
-/// was interrupted and resumed and one that was not.
+/// Results of sessions: each session's state, its units, its answers, and the last presentation of each trial.
+/// A session that was interrupted and resumed has the same lines as one that was not.
 Lines session_content(const fs::path& database);
 /// Every row of every table except the register of exports, without times of day. Of the log of events, only
 /// the events of a session, except "resumed".
@@ -27,7 +27,7 @@ Lines folder_content(const fs::path& folder);
 
 /// One row per acknowledged answer, with its number and time: it must never change.
 Lines answer_rows(const fs::path& database);
-/// "P01 3" for each finished unit.
+/// Participant and position of each finished unit, such as "P01 3".
 Lines done_units(const fs::path& database);
 /// True if the database has a plan of sessions.
 bool is_planned(const fs::path& database);

@@ -72,7 +72,7 @@ struct Synced {
   }
 };
 
-/// The calls on which each call on a name depends.
+/// For each call that adds, changes or removes a name: the earlier calls without which it cannot be kept.
 std::vector<std::vector<std::size_t>> foundations(const std::vector<Call>& calls, std::size_t count) {
   std::vector<std::vector<std::size_t>> all(count);
   std::map<std::string, std::size_t> maker;                 // index of the call that made the current name
@@ -193,7 +193,7 @@ class Crash {
     if (kept || sure)
       tree_.files[call.file].resize(static_cast<std::size_t>(call.at));
     else if (model_ == Model::Ext4)
-      torn_off_.insert(call.file);  // blocks written later are beyond every durable size of the file
+      torn_off_.insert(call.file);  // as the truncation is lost, unsynced writes after it are lost too
   }
 
   void change_name(const Call& call) {

@@ -83,7 +83,8 @@ void Crashes::check(const When& when, const Gone& gone, Problems& problems) {
     Problems found;
     const fs::path station = now_ / name;
     DatabaseFacts facts = read_facts(station / "s.db", peek_, found);
-    // Exports follow the journal, which may be ahead of the database.
+    // Exports obey the journal too, which may already hold a permission that the database lacks, so until the
+    // database is settled the answers of these people count as unknown.
     if (!when.settled)
       for (const std::string& key : command_.allowed)
         if (facts.sessions.contains(key)) facts.sessions[key].gaze = facts.sessions[key].sharing = {};

@@ -30,7 +30,7 @@ class Crashes {
   /// Prepares the command in `folder`, which only this object may use, and records its calls.
   Crashes(const Command& command, const fs::path& folder);
 
-  /// Problems without any fault.
+  /// Problems that were found when the command ran without a fault.
   const Problems& at_first() const { return at_first_; }
   /// Number of recorded calls and texts.
   std::size_t calls() const { return recorded_.calls.size(); }
@@ -38,7 +38,7 @@ class Crashes {
   std::string last_call(const CrashTry& one) const;
   /// Makes the state. Returns false if an equal state was made before.
   bool make(const CrashTry& one);
-  /// Continues from the state that was made last.
+  /// Continues in both ways from the state that was made last; returns the problems.
   Problems go_on();
 
  private:
@@ -47,7 +47,7 @@ class Crashes {
   struct When {
     std::string name;
     bool exports = true;  ///< exports may be made now
-    bool settled = true;  ///< as in check_acknowledged()
+    bool settled = true;  ///< the database was opened for writing since the fault
   };
   void check(const When& when, const Gone& gone, Problems& problems);
   std::vector<std::string> described(Problems& problems);

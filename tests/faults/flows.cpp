@@ -219,7 +219,7 @@ const std::vector<Flow>& all_flows() {
                 upgraded_content,
                 {"s.db"},
                 "s.db",
-                4};  // these sessions take seconds
+                4};  // only one in four kinds of faults, because these sessions take seconds
   };
   static const std::vector<Flow> flows{
       {"run", write_protocol, run, go_on, sessions, {}, "s.db"},

@@ -35,7 +35,7 @@ struct Flow {
 fs::path program_folder();
 Arguments vip_study(const Arguments& more);
 
-/// All flows, in the order of the table.
+/// All flows, in the order of the table that vip-faults prints.
 const std::vector<Flow>& all_flows();
 
 /// A short study with pages, personal data, free text, practice and trials.

@@ -59,7 +59,7 @@ bool HistoryRun::command(const Step& step, bool always, const Work& work) {
   here().ahead_s += recovery_s;
   ended = stations_.perform(step, station_, false, work);
   told_ += ", given again";
-  // A stored plan remains; the session was finished above.
+  // The error says that the session's plan is already stored: open() above resumed and finished that session.
   if (ended.problem.find("continue with vip-study resume") != std::string::npos) return true;
   if (ended.how != How::Done) wrong("given again: " + ended.problem);
   return ended.how == How::Done;

@@ -126,7 +126,7 @@ Problems Stations::check(std::size_t index, bool exports) {
   }
   if (exports) {
     for (auto& [key, one] : facts.sessions) {
-      // People's decisions count, whatever a restored database says.
+      // The decisions known to the station count, even if a restored database does not know of a refusal.
       if (one.gaze && !decisions.allows(station.known, key, What::Gaze)) one.gaze = false;
       if (one.sharing && !decisions.allows(station.known, key, What::Sharing)) one.sharing = false;
     }

@@ -31,7 +31,7 @@ std::string shortest(double number) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-/// The number in SQLite's storage format.
+/// The eight bytes, most significant first, as which SQLite stores the number.
 std::string stored(double number) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &number, sizeof bits);
@@ -74,7 +74,7 @@ bool names_subject(const std::string& text, const std::string& participant) {
   return false;
 }
 
-/// The responses in a journal, each from the last line of its row, in the form of Response::row.
+/// The responses in a journal as "response_id score words". Of several lines about one response the last counts.
 std::set<std::string> journal_responses(const std::string& bytes) {
   std::map<std::int64_t, std::string> last;
   for (std::size_t at = 0, end; (end = bytes.find('\n', at)) != std::string::npos; at = end + 1) {
@@ -190,7 +190,7 @@ Problems check_unchanged(const std::map<std::string, std::string>& before, const
   auto after = bytes_of_folder(folder);
   for (const auto& [name, bytes] : before) {
     const auto found = after.find(name);
-    // An empty log has no data.
+    // A file that was empty, such as SQLite's log (-wal), may disappear.
     if (found == after.end() ? !bytes.empty() : found->second != bytes)
       problems.push_back("unchanged: " + name + " was changed by a command that was refused");
     if (found != after.end()) after.erase(found);

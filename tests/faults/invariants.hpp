@@ -4,8 +4,8 @@
 ///
 /// - refused: people who refused gaze have no row of gaze, head or gaze_validation, and none in any export;
 ///   people who refused sharing are in no public export.
-/// - tombstone: the mark and the gaze position of a person who withdrew are in no file of the station and in
-/// no export.
+/// - tombstone: the mark of a person who withdrew (a text that only this person's answers contain) and this
+///   person's gaze position are in no file of the station and in no export.
 /// - acknowledged: an acknowledged answer is in the database and in its journal, and personal answers are in
 ///   the file of personal data.
 /// - "refused": a command that says that it changed nothing left every file unchanged.

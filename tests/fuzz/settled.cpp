@@ -1,5 +1,5 @@
-/// Any bytes as a settled state, with and without the right checksum: the result is nothing, or particles
-/// with only finite numbers.
+/// Any bytes as a settled state (a cache file of the particles of a scene whose water has settled), with and
+/// without the right checksum: the result is nothing, or particles with only finite numbers.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

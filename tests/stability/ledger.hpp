@@ -52,9 +52,9 @@ class Ledger {
   /// Balance of the whole run; each value is a share of `gross` unless it has a unit.
   struct Balance {
     double gross = 0;         ///< kg m/s: sum over frames of the forces' or the walls' impulse, the larger
-    double open = 0;          ///< change of momentum that no entry explains
+    double open = 0;          ///< change of momentum that no entry of the run's account explains
     double unattributed = 0;  ///< part of the constraint's impulse that no wall gave
-    double rests = 0;   ///< the same, plus what particles that were not solved took from the velocity grid
+    double rests = 0;   ///< `unattributed`, plus what unsolved particles took from the velocity grid
     double forces = 0;  ///< impulse of the forces less g M dt
     double event = 0;   ///< largest momentum of a frame's splits and merges, as a share of the sum of m |v|
     double energy = 0;  ///< largest energy, as a share of the energy of the start and of poured water

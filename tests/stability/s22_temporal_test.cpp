@@ -43,7 +43,7 @@ void beta_one_changes_no_bit(Backend backend) {
   auto options = dam_options(backend, 256);
   options.start = settled_dam(scene, options);
   const auto off = sim::make_simulation(scene, options);
-  options.temporal.always = true;  // tau is measured
+  options.temporal.always = true;  // with tau from the measured frame times, not a given tau
   const auto on = sim::make_simulation(scene, options);
   EXPECT_NE(on->explain().find("frame start  activation"), std::string::npos);
   EXPECT_NE(off->explain().find("-  activation"), std::string::npos);
@@ -166,7 +166,7 @@ double median(std::vector<double> values) {
 }
 
 /// The bounds apply to the median over `draws` random choices of resting particles, because single runs
-/// scatter by 0.005 at beta 0.3.
+/// scatter by 0.005 at beta 0.3. Beta is the lowest probability that a particle is solved in a frame.
 void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::vector<DamGate>& gates,
                    std::uint32_t draws) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
@@ -193,8 +193,9 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     EXPECT_LT(median(kinetic), gate.kinetic_high);
   }
 }
-// Case S22 takes 10 s, or 2 s in short tests. It asks for an error of the centre below 0.02 and for at most
-// 1.05 of the kinetic energy at each beta; docs/results.md explains why lower betas have larger bounds.
+// Case S22 takes 10 s, or 2 s in short tests. It asks for an error of the centre below 0.02 and for at most 1.05
+// of the full solve's kinetic energy at each beta (the lowest probability that a particle is solved);
+// docs/results.md explains why lower betas have larger bounds.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.025, 0.8, 1.05}, {0.3, 0.035, 0.8, 1.08}};
 TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {
   dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);

@@ -13,7 +13,7 @@ TEST(S24Soak, TheProcessDoesNotGrow) {
   const auto grown = std::find_if(outcome.findings.begin(), outcome.findings.end(),
                                   [](const auto& one) { return one.name == "growth of the process"; });
   ASSERT_NE(grown, outcome.findings.end());
-  // Over 600 frames: a leak of 30 KiB a frame would show.
+  // MiB over 600 frames: a leak of 30 KiB a frame would show.
   EXPECT_LT(grown->value, 16);
 }
 

@@ -68,7 +68,8 @@ State within_reach(const Drop& drop, State state) {
   return state;
 }
 
-/// The work computed from the contact angle, over the scene's; the angle is the mean of the last half period.
+/// The work of adhesion that follows from the drop's contact angle, over that of the scene. The angle is the mean
+/// over the last half of a Drop::period(), the period in which the drop oscillates.
 double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 0.02) {
   const auto ball = in_ball(drop);
   const auto fluid = start_of(drop, [&](const Vec3d& x) { return x[1] > 0 && ball(x); });
@@ -144,7 +145,7 @@ void drops_that_the_floor_holds_less(Backend backend) {
   EXPECT_NEAR(adhesion_back(on_the_floor({.work = upright, .backend = backend})), 1, 0.2);
   EXPECT_LT(adhesion_back(on_the_floor({.work = blunt, .backend = backend}), 4, 1), 1 + within);
 }
-/// On a box the result must be as good as on the floor.
+/// On a box the recovered work must be within the bound that holds on the floor.
 void drops_on_a_box(Backend backend, const Works& works) {
   NEEDS_EFFECTS;
   for (const double work : works)
@@ -215,7 +216,7 @@ Lens seen_of(const Drop& drop, const State& state) {
   return {along / ball.radius_m, std::sqrt(square) / ball.radius_m};
 }
 
-/// The work computed from the angle on a ball, over the scene's.
+/// The work of adhesion that follows from the contact angle on a ball, over that of the scene.
 double adhesion_to_a_ball(const Drop& drop) {
   const sim::Obstacle& ball = drop.obstacles.at(0);
   const auto inside = in_ball(drop);

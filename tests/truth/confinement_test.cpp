@@ -50,7 +50,7 @@ struct Pool {
   }
 };
 
-/// Options of the effect.
+/// Options of the effect, 1/s: it leaves swirl slower than `from` alone, and swirl of `most` and more.
 struct Fed {
   double from, most;
 };
@@ -108,7 +108,8 @@ double spin(const Pool& pool, const State& state) {
   return along / norm;
 }
 
-/// The recovered coefficient over the scene's, for each of `frames`.
+/// The coefficient of the effect that follows from the gain of speed, over that of the scene, for each of
+/// `frames`.
 Gains confinement_back(const Pool& pool) {
   const State start = pool.turning();
   Gains gained[2];
@@ -116,7 +117,8 @@ Gains confinement_back(const Pool& pool) {
   double solved = 1;
   for (const bool on : {false, true}) {
     const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
-    // The choice of resting particles depends on the frames before.
+    // With temporal acceleration the choice of resting particles depends on the frames before, so 30 frames run
+    // before the start is put back.
     for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
     fluid->put(start);
     for (std::size_t k = 0; k < frames.size(); ++k) {

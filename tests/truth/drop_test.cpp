@@ -59,7 +59,7 @@ void drops_stretch(Backend backend, int spacings) {
   for (const auto& file : files)
     for (const auto method : methods) drop_stretches({backend, method}, file, spacings);
 }
-/// Largest value of a file or a run in [from, until].
+/// Largest y at the times t in [from, until].
 double peak_after(const std::vector<double>& t, const std::vector<double>& y, double from, double until) {
   double out = 0;
   for (std::size_t i = 0; i < t.size(); ++i)

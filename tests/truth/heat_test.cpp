@@ -162,8 +162,8 @@ void walls_warm(const Pool& pool) {
   EXPECT_NEAR(report.heat.from_walls / report.heat.held, 1, 1e-5) << pool.name;
 }
 
-/// theta = T cos(k x), k = pi / L: with the pressure, the acceleration is g beta T cos(k x) (1 - cosh(k y) +
-/// tanh(k H) sinh(k y)); its mean over y measures beta. The surface rises by a(H) t^2 / 2 and pulls back: to
+/// Warmth theta = T cos(k x), k = pi / L: with the pressure, the acceleration is g beta T cos(k x) (1 - cosh(k y)
+/// + tanh(k H) sinh(k y)), where beta is the expansion per kelvin; its mean over y measures beta. The surface rises by a(H) t^2 / 2 and pulls back: to
 /// first order in k g t^2 this reduces the mean by g (1 - 1 / cosh(k H)) / H of its height. The forces of the
 /// last substep, which the pressure has not balanced yet, are in both measurements.
 /// Merges push the water too: with ten frames, and a second run in still water, 28 runs at mixed levels

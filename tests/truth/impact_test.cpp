@@ -59,7 +59,7 @@ void compare(const TruthFile& file, const Run& run, std::vector<double> time,
                 file.name() + ", plateau, " + run.name());
 }
 
-/// One run for all sensors of a scene.
+/// Makes one run of a scene, and compares it with each of `files`, which have a sensor each.
 void dam_strikes(Run run, const std::filesystem::path& path, const std::vector<TruthFile>& files,
                  std::int64_t n_star) {
   const auto scene = sim::read_scene(path);

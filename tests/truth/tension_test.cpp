@@ -23,8 +23,8 @@ double stretch(const State& state) {
   return std::log(a[1] / std::sqrt(a[0] * a[2])) * 2 / 3;
 }
 
-/// sigma over the scene's, from the frequency and decay of the best-fitting damped oscillation: a drop
-/// oscillates at sqrt(omega_0^2 - gamma^2).
+/// The tension sigma that follows from the frequency and the decay rate gamma of the best-fitting damped
+/// oscillation, over that of the scene: a drop oscillates at sqrt(omega_0^2 - gamma^2).
 double tension_back(const Drop& drop, std::uint32_t seed = 1) {
   sim::SimulationOptions options;
   options.temporal.seed = seed;
