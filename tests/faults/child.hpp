@@ -1,6 +1,6 @@
 #pragma once
-/// Runs a command of the library in its own process, under a CallPlan (file_calls.hpp): the fault to inject into
-/// its calls on files.
+/// Runs a command of the library in its own process, under a CallPlan (file_calls.hpp): the fault to inject
+/// into its calls on files.
 
 #include <functional>
 #include <string>

@@ -23,11 +23,11 @@ struct Command {
   std::vector<std::string> stations;  ///< stations to check afterwards
   /// People who have withdrawn when the command is done, by station.
   std::map<std::string, std::vector<Person>> gone{};
-  /// People who have withdrawn when `other` is done, by station. People whose withdrawal the database records (by
-  /// a row of the table tombstone) count without being listed here.
+  /// People who have withdrawn when `other` is done, by station. People whose withdrawal the database records
+  /// (by a row of the table tombstone) count without being listed here.
   std::map<std::string, std::vector<Person>> gone_by_other{};
-  /// People whose permission the command grants. After a fault both answers are valid, until a command has opened
-  /// the database for writing.
+  /// People whose permission the command grants. After a fault both answers are valid, until a command has
+  /// opened the database for writing.
   std::set<std::string> allowed{};
   bool refuses = false;  ///< the command must be refused and change nothing
   bool is_read = true;   ///< exports can be made from the stations right after the fault

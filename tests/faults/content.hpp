@@ -11,8 +11,8 @@ namespace faults {
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
-/// Results of sessions: each session's state, its units, its answers, and the last presentation of each trial.
-/// A session that was interrupted and resumed has the same lines as one that was not.
+/// Results of sessions: each session's state, its units, its answers, and the last presentation of each
+/// trial. A session that was interrupted and resumed has the same lines as one that was not.
 Lines session_content(const fs::path& database);
 /// Every row of every table except the register of exports, without times of day. Of the log of events, only
 /// the events of a session, except "resumed".

@@ -118,8 +118,8 @@ Act count(Need need) {
   return Act::Fail;
 }
 
-/// For calls that cannot be done in part: a kill in the middle of one is a kill before it. True if the call must
-/// fail.
+/// For calls that cannot be done in part: a kill in the middle of one is a kill before it. True if the call
+/// must fail.
 bool refuse(Need need) {
   const Act act = count(need);
   if (act == Act::Half) die();

@@ -42,8 +42,8 @@ void record(Done kind, std::uint64_t file, std::int64_t at, std::string_view pat
             std::string_view bytes = {});
 /// Counts a call; does not return if the program is to be killed before it.
 Act count(Need need);
-/// count() for a call that cannot be done in part. True if the call must fail; does not return if the program is
-/// to be killed before or in it.
+/// count() for a call that cannot be done in part. True if the call must fail; does not return if the program
+/// is to be killed before or in it.
 bool refuse(Need need);
 /// If the plan counts reads, counts a read of a watched file. True if the call must fail.
 bool refuse_read(int fd);

@@ -74,7 +74,8 @@ bool names_subject(const std::string& text, const std::string& participant) {
   return false;
 }
 
-/// The responses in a journal as "response_id score words". Of several lines about one response the last counts.
+/// The responses in a journal as "response_id score words". Of several lines about one response the last
+/// counts.
 std::set<std::string> journal_responses(const std::string& bytes) {
   std::map<std::int64_t, std::string> last;
   for (std::size_t at = 0, end; (end = bytes.find('\n', at)) != std::string::npos; at = end + 1) {

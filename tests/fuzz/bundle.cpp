@@ -1,5 +1,5 @@
-/// A preregistration bundle in which one file has any bytes and the right hash: it is read and compared with made
-/// results of a study, or refused with base::Error. The first byte of the input chooses the file.
+/// A preregistration bundle in which one file has any bytes and the right hash: it is read and compared with
+/// made results of a study, or refused with base::Error. The first byte of the input chooses the file.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

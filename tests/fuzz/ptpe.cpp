@@ -1,6 +1,6 @@
-/// Any bytes as a PTPE file (ptpe.toml: a threshold curve of frame rates that a study fitted, for the solver):
-/// refused with base::Error, or read. A file that was read must give the same text after it is written and read
-/// again.
+/// Any bytes as a PTPE file (ptpe.toml: a threshold curve of frame rates that a study fitted, for the
+/// solver): refused with base::Error, or read. A file that was read must give the same text after it is
+/// written and read again.
 
 #include <cstdint>
 #include <cstdlib>

@@ -65,7 +65,7 @@ void counts_what_is_there(Backend backend) {
 TEST(Account, CountsWhatIsThere) { counts_what_is_there(Backend::Cpu); }
 TEST(AccountGpu, CountsWhatIsThere) { counts_what_is_there(Backend::Cuda); }
 
-/// The sum over all frames must equal the run's report.
+/// Counts of guards in the accounts of all frames so far must add up to those in the run's report.
 void guards_are_of_one_frame(Backend backend) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   const auto fluid = sim::make_simulation(scene, options_of(backend, MethodKind::Ours));
@@ -102,8 +102,8 @@ void methods_without_tau_have_none(Backend backend) {
 TEST(Account, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cpu); }
 TEST(AccountGpu, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cuda); }
 
-/// A frame is solved before its own duration is known. Its account must give the tau that it was solved with,
-/// which comes from earlier frames.
+/// Tau, which decides how many particles may rest, follows from the durations of frames. A frame is solved
+/// before its own duration is known, so its account must give the tau from the durations of earlier frames.
 TEST(Account, TauIsWhatTheFrameWentByNotWhatCameAfterIt) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   const auto fluid = sim::make_simulation(scene, options_of(Backend::Cpu, MethodKind::OursTsp));

@@ -79,7 +79,7 @@ void a_particle_swings(Backend backend) {
 TEST(CentralForce, AParticleSwingsWithItsPeriod) { a_particle_swings(Backend::Cpu); }
 TEST(CentralForceGpu, AParticleSwingsWithItsPeriod) { a_particle_swings(Backend::Cuda); }
 
-/// Angular momentum about the y axis through (4, ., 4), over m_*, m2/s.
+/// Angular momentum about the y axis through (4, ., 4), over the mass of a particle of level 0, m2/s.
 double angular_momentum(const std::vector<ParticleState>& state) {
   double sum = 0;
   for (const auto& p : state) {

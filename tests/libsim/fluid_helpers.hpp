@@ -75,7 +75,7 @@ inline std::vector<int> neighbour_counts(const std::vector<ParticleState>& state
   return out;
 }
 
-/// Columns of a CSV file with '#' comments and one header line.
+/// Columns, by the names in the header line, of a CSV file whose other lines are numbers or comments (#).
 inline std::map<std::string, std::vector<double>> read_columns(const std::string& resource) {
   std::istringstream in(base::read_file(base::resource(resource), 1 << 20));
   std::vector<std::string> names;

@@ -110,7 +110,8 @@ std::vector<float> temperatures(const sim::Simulation& fluid) {
   return out;
 }
 
-/// All particles merge, then a ball of water splits, while most of the water rests at times (beta = 0.3).
+/// All particles merge, then a ball of water splits, while most of the water rests at times: beta, the lowest
+/// probability that a particle is solved, is 0.3.
 void the_total_stays(Backend backend) {
   NEEDS_EFFECTS;
   auto options = levels_test::options_for(backend, 288, levels_test::everywhere(3));

@@ -36,7 +36,7 @@ inline std::int64_t mass_units(const std::vector<ParticleState>& state) {
   return sum;
 }
 
-/// Total momentum over m_*, m/s.
+/// Total momentum over m_* (the mass of a particle of level 0), m/s.
 inline std::array<double, 3> momentum(const std::vector<ParticleState>& state) {
   std::array<double, 3> sum{};
   for (const auto& p : state) {
@@ -54,7 +54,8 @@ inline double share_at(const sim::FrameReport& report, std::size_t level) {
          static_cast<double>(report.mass_units);
 }
 
-/// The particle counts add up, the mass is unchanged, and ids are unique.
+/// Expects that splits and merges account for the change of the particle count since `start`, that the mass
+/// is `mass`, and that ids are unique.
 inline void expect_sound(sim::Simulation& fluid, std::int64_t start, std::int64_t mass) {
   const auto report = fluid.report();
   const auto state = fluid.read_state();
@@ -88,7 +89,7 @@ struct Settled {
 
 using sim::cases::kinetic_energy;
 
-/// Potential and kinetic energy over m_*, m2/s2.
+/// Potential and kinetic energy over m_* (the mass of a particle of level 0), m2/s2.
 inline double energy(const std::vector<ParticleState>& state) {
   return gravity * sim::cases::centre_height(state) * static_cast<double>(mass_units(state)) +
          kinetic_energy(state);

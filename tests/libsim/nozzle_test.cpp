@@ -166,7 +166,8 @@ void counts_flow_and_walls_hold(Backend backend) {
 TEST(Nozzle, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cpu); }
 TEST(NozzleGpu, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cuda); }
 
-/// Poured mass, in m_*, at the end of each frame that ends at a whole multiple of 1/60 s.
+/// Poured mass, in masses of a particle of level 0, at the end of each frame that ends at a whole multiple of
+/// 1/60 s.
 std::vector<std::int64_t> poured_over_time(const sim::Scene& scene, double frame_dt_s, int frames) {
   auto options = small(Backend::Cpu, MethodKind::LoRes);
   options.frame_dt_s = frame_dt_s;

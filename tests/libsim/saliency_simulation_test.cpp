@@ -91,8 +91,8 @@ void parts_make_up_the_whole(Backend backend) {
 TEST(SaliencyInSimulations, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cpu); }
 TEST(SaliencyInSimulationsGpu, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cuda); }
 
-/// Saliency reads the neighbour lists of the last substep; a measurement in between discards them, and the
-/// next frame searches again.
+/// Saliency reads the neighbour lists of the last substep. A measurement of saliency between two frames
+/// discards them, so that the next frame searches again. The saliency must hardly differ.
 void recalled_neighbours_tell_what_a_search_tells(Backend backend) {
   for (const bool temporal : {false, true}) {
     sim::SimulationOptions options;
@@ -129,7 +129,8 @@ TEST(SaliencyInSimulationsGpu, RecalledNeighboursTellWhatASearchTells) {
   recalled_neighbours_tell_what_a_search_tells(Backend::Cuda);
 }
 
-/// A run whose numbers change continues like a run that was made with the new numbers.
+/// A run whose live numbers (saliency's alpha, iterations of the solver) are changed continues like a run
+/// that was made with the new numbers.
 void numbers_change_while_it_runs(Backend backend) {
   const auto changed = make(backend, MethodKind::Ours, true);
   const auto before = changed->live_numbers();

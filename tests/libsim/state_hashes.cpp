@@ -1,7 +1,7 @@
 /// vip-state-hashes [DATA_FOLDER [N_STAR [FRAMES]]] (default: data 512 200) prints hashes of the solver's
 /// results, to compare two versions of the sources on one machine: three scenes, five methods, every 20th
-/// frame, and the schedule of each. Ours-TSp runs at tau = -6. A change that only moves code leaves every
-/// line unchanged.
+/// frame, and the schedule of each. Ours-TSp runs at a fixed tau of -6 frames/s, so that particles rest. A
+/// change that only moves code leaves every line unchanged.
 
 #include <cmath>
 #include <cstdlib>

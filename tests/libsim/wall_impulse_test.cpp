@@ -95,7 +95,8 @@ void asking_changes_no_bit(Backend backend) {
 TEST(WallImpulse, AskingChangesNoBit) { asking_changes_no_bit(Backend::Cpu); }
 TEST(WallImpulseGpu, AskingChangesNoBit) { asking_changes_no_bit(Backend::Cuda); }
 
-/// Sums over frames, each as a share of the weight's impulse.
+/// Change of the water's momentum and impulses on it, summed over frames, as shares of the impulse of the
+/// column's weight in these frames.
 struct Books {
   double change = 0, forces = 0, walls = 0;  ///< along y
   double open = 0;                  ///< change that forces and walls do not explain, the largest component

@@ -59,8 +59,8 @@ State far_third(const sim::Simulation& fluid) {
   return state;
 }
 
-/// 99th percentile of the distance, m, between a particle of `fluid` and the particle with its id in `twin`, over
-/// the particles that lie in the far third of `twin`. Both runs must have the same ids.
+/// 99th percentile of the distance, m, between a particle of `fluid` and the particle with its id in `twin`,
+/// over the particles that lie in the far third of `twin`. Both runs must have the same ids.
 double way_far_away(const sim::Simulation& fluid, const sim::Simulation& twin) {
   const State all = fluid.read_state();
   std::vector<double> way;

@@ -54,8 +54,8 @@ class Ledger {
     double gross = 0;         ///< kg m/s: sum over frames of the forces' or the walls' impulse, the larger
     double open = 0;          ///< change of momentum that no entry of the run's account explains
     double unattributed = 0;  ///< part of the constraint's impulse that no wall gave
-    double rests = 0;   ///< `unattributed`, plus what unsolved particles took from the velocity grid
-    double forces = 0;  ///< impulse of the forces less g M dt
+    double rests = 0;         ///< `unattributed`, plus what unsolved particles took from the velocity grid
+    double forces = 0;        ///< impulse of the forces less g M dt
     double event = 0;   ///< largest momentum of a frame's splits and merges, as a share of the sum of m |v|
     double energy = 0;  ///< largest energy, as a share of the energy of the start and of poured water
   };

@@ -159,10 +159,10 @@ std::vector<Splits> splits_of(Backend backend, const sim::Readings& readings,
 }
 
 /// Bound of the largest kick, m/s, for spheres that hold one, a few or all particles. Measured with -O2 and
-/// -march=native: at most 0.44, 0.86 and 1.48, and 1.0 for one particle without the kick filter, which evens out
-/// velocity changes near particles that just split. S4 asks for 0.5 sqrt(g d_*) = 0.61 in a frame, which one
-/// particle meets. In a sphere with a few, merges beside them push too; in the whole tank, overlaps that are not
-/// yet resolved still push.
+/// -march=native: at most 0.44, 0.86 and 1.48, and 1.0 for one particle without the kick filter, which evens
+/// out velocity changes near particles that just split. S4 asks for 0.5 sqrt(g d_*) = 0.61 in a frame, which
+/// one particle meets. In a sphere with a few, merges beside them push too; in the whole tank, overlaps that
+/// are not yet resolved still push.
 double most_kick(double radius) { return radius == one ? 0.8 : radius == few ? 1.3 : 2.2; }
 
 void splits_are_calm(Backend backend, const std::vector<double>& radii, const std::vector<int>& levels,

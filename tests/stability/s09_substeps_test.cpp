@@ -59,9 +59,9 @@ TEST(S09Jet, StrongGravityCountsWhereWaterRests) {
   EXPECT_EQ(steps(1000), 5);
 }
 
-/// The bounds that case S1 (a tank at rest) sets for the density, in a pool of 13 layers. Under 1000 m/s2 the pool
-/// settles to 0.96 of its height, as under the earth's gravity. With only the scene's two substeps a frame it
-/// settled to 0.90.
+/// The bounds that case S1 (a tank at rest) sets for the density, in a pool of 13 layers. Under 1000 m/s2 the
+/// pool settles to 0.96 of its height, as under the earth's gravity. With only the scene's two substeps a
+/// frame it settled to 0.90.
 TEST(S09Jet, APoolUnderStrongGravityKeepsItsDensityAndHeight) {
   for (const double strength : {160.0, 1000.0}) {
     auto scene = fluid_test::tank({0.8, 1.6, 0.8}, {0.8, 0.8, 0.8}, 20);

@@ -109,8 +109,8 @@ std::string read_all(sim::Simulation& fluid) {
 }
 
 void goes_on_bit_for_bit(Backend backend, const sim::Scene& scene, const fs::path& path) {
-  // More than the 30 frames whose durations tau (which decides how many particles may rest) is computed from. Odd,
-  // so that saliency's flow, which is computed every second frame, is not due.
+  // More than the 30 frames whose durations tau (which decides how many particles may rest) is computed from.
+  // Odd, so that saliency's flow, which is computed every second frame, is not due.
   constexpr int half = 37;
   for (const auto& traits : sim::all_methods()) {
     SCOPED_TRACE(sim::method_name(traits.kind));

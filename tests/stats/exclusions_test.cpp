@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// Trials of one visit that pass: their main ratings, and five answers in each.
+/// Trials of one visit, whose timing passes, with these main ratings and five answers in each.
 std::vector<TrialRecord> visit(const std::vector<double>& ratings, const std::string& participant = "P1") {
   std::vector<TrialRecord> out;
   for (const double rating : ratings) {

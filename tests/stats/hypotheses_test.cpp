@@ -124,7 +124,8 @@ TEST(Hypotheses, TestsAreThoseOfTheTable) {
   EXPECT_NEAR(*sided[2].tests[2].p, against_margin(Alternative::Less), 1e-12);
 }
 
-/// True if the test's interval lies where the claim needs it.
+/// True if the test's confidence interval lies wholly on the side of zero, of the margin or of one half, or
+/// wholly between the margins, that the claim needs.
 bool interval_holds(const Hypothesis& hypothesis, const HypothesisTest& test) {
   const auto [low, high] = *test.ci;
   const bool more = test.score != "sickness";
@@ -141,7 +142,8 @@ bool interval_holds(const Hypothesis& hypothesis, const HypothesisTest& test) {
   return low > 0.5;
 }
 
-// With all six two-sided or all six one-sided, the interval of 1 - alpha or of 1 - 2 alpha decides each test.
+// If all six hypotheses are tested two-sided, the interval of 1 - alpha decides each test; if all are tested
+// one-sided, that of 1 - 2 alpha.
 TEST(Hypotheses, TheIntervalShownDecidesEachTestAlike) {
   for (const AnalysisPlan& plan : {AnalysisPlan{}, one_sided_throughout()}) {
     int holding = 0, tests = 0;

@@ -1,4 +1,5 @@
-/// Tipping points of H1 to H3: the plan's decision changes at the shift that is found.
+/// Tipping points of H1 to H3: the shift, in points, by which missing answers would have to be worse than
+/// expected to change the decision of the plan. At the shift that is found the decision must change.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,8 +61,8 @@ bool holds_at(const Hypothesis& claim, std::size_t index, double estimate) {
   return right && adjust(all, Adjustment::Holm)->p[index] < claim.alpha;
 }
 
-/// Expects the decision to be unchanged just before each side's shift and changed just behind it. Returns the
-/// number of shifts found.
+/// For the missing answers about either of the two methods that a test compares: expects the decision to be
+/// unchanged just before the shift and changed just behind it. Returns the number of shifts found.
 int expect_tips(const Hypothesis& claim, std::size_t index) {
   const HypothesisTest& test = claim.tests[index];
   const TippingPoint& tipping = **test.tipping;

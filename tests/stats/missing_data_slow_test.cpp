@@ -51,7 +51,8 @@ struct Study {
   int left = 0;
 };
 
-/// The last method is better by `lift` points before rounding; scenes, positions and people differ.
+/// Answers in which the last method is better by `lift` points before rounding, the other methods are equal
+/// on average, and scenes, positions and people differ in their levels.
 Study simulate(int people, Leaving leaving, double lift, std::uint64_t seed) {
   Study out;
   std::mt19937_64 generator(seed);

@@ -101,7 +101,9 @@ TEST(MixedHypotheses, CompletePairsGiveThePairedTest) {
   EXPECT_THAT(h1.rule, HasSubstr("t tests of the mixed model, two-sided"));
 }
 
-// "half left" of mixed_model.R: only one of the two tests uses the answers of people who left early.
+// The study "half left" of mixed_model.R: the tests of the mixed model use the answers of people who left
+// early, the paired tests do not. The plan's key decides which tests count; the others are reported beside
+// them.
 TEST(MixedHypotheses, TheKeyDecidesAndTheOtherStandsBeside) {
   const json study = made_by_r("mixed_model.json").at("studies")[1];
   const auto mixed = judged(study, by_model()), paired = judged(study, {});

@@ -162,8 +162,10 @@ TEST(Task1, SwappingMethodsSwapsSignsAndKeepsP) {
   EXPECT_NEAR(one.equivalence->p, other.equivalence->p, 1e-14);
 }
 
-/// Share of 1,000 null studies in which the paired t test of the two columns gives p < .05. Each participant
-/// has a preference of their own, and two blocks at one n_*.
+/// Share of 1,000 studies without a true difference in which the paired t test of two methods gives p < .05.
+/// Each participant has a preference of their own, and sees two blocks with one number of particles.
+/// `averaged`: a participant's two blocks make one row of the table, otherwise two rows, as if two people had
+/// seen them.
 double false_alarms(bool averaged) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;

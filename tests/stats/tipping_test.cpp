@@ -1,4 +1,6 @@
-/// Tipping points: the decision on the completed data changes at the shift that is found.
+/// Tipping points: the shift, in points, by which the missing answers would have to be worse than expected to
+/// change a decision. On the data completed with such answers the decision must change at the shift that is
+/// found.
 
 #include "stats/analysis/tipping.hpp"
 

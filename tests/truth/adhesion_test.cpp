@@ -68,8 +68,8 @@ State within_reach(const Drop& drop, State state) {
   return state;
 }
 
-/// The work of adhesion that follows from the drop's contact angle, over that of the scene. The angle is the mean
-/// over the last half of a Drop::period(), the period in which the drop oscillates.
+/// The work of adhesion that follows from the drop's contact angle, over that of the scene. The angle is the
+/// mean over the last half of a Drop::period(), the period in which the drop oscillates.
 double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 0.02) {
   const auto ball = in_ball(drop);
   const auto fluid = start_of(drop, [&](const Vec3d& x) { return x[1] > 0 && ball(x); });

@@ -117,8 +117,8 @@ Gains confinement_back(const Pool& pool) {
   double solved = 1;
   for (const bool on : {false, true}) {
     const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
-    // With temporal acceleration the choice of resting particles depends on the frames before, so 30 frames run
-    // before the start is put back.
+    // With temporal acceleration the choice of resting particles depends on the frames before, so 30 frames
+    // run before the start is put back.
     for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
     fluid->put(start);
     for (std::size_t k = 0; k < frames.size(); ++k) {

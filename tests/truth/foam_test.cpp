@@ -69,9 +69,9 @@ double between_water(const State& state, double d, double edge, int n) {
 }
 
 /// The emission rate that follows from the volume of foam, over that of the scene. A ball of water rotates at
-/// Omega, held by the central force; points in a direction at an angle a to the axis approach at Omega sin a over
-/// their distance: pi / 4 Omega on average. The rate holds at full potential, which the scene sets to ten times
-/// this approach, so that the potential is a tenth.
+/// Omega, held by the central force; points in a direction at an angle a to the axis approach at Omega sin a
+/// over their distance: pi / 4 Omega on average. The rate holds at full potential, which the scene sets to
+/// ten times this approach, so that the potential is a tenth.
 double rate_back(const Turning& turning) {
   const double tilt = 1 / std::sqrt(3.0);  // not along a row of the lattice
   constexpr double d = 0.05, omega = 4, rate = 0.8, radius = 0.6, middle = 0.8;
@@ -122,8 +122,8 @@ void rate_comes_back(const Turning& turning) {
   EXPECT_NEAR(back, 1, 0.15);
 }
 
-/// The fine water, a ball around the rotation's middle: rotation takes no water into or out of it, so that none
-/// changes its level.
+/// The fine water, a ball around the rotation's middle: rotation takes no water into or out of it, so that
+/// none changes its level.
 const sim::TargetRegion core{{0.8, 0.8, 0.8}, 0.4, 0, 3};
 
 TEST(TruthFoam, Level0) {
@@ -151,8 +151,8 @@ TEST(TruthFoamGpu, RateComesBack) {
   rate_comes_back({.beta = 0.67, .backend = Backend::Cuda});
 }
 
-/// Volume of foam of SingleDam at n_* = 1k over two seconds, m3, with the usual coefficients of foam: the mean of
-/// two runs whose frame steps differ by one per cent, because runs diverge by chance.
+/// Volume of foam of SingleDam at n_* = 1k over two seconds, m3, with the usual coefficients of foam: the
+/// mean of two runs whose frame steps differ by one per cent, because runs diverge by chance.
 double dam_volume(MethodKind method, Backend backend) {
   double sum = 0;
   for (const double step : {0.995, 1.005}) {

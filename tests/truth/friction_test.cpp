@@ -73,8 +73,8 @@ double thickness_of(const State& state) {
   return total_mass(state) / mass(ParticleState{}) * d * d * d / face;
 }
 
-/// The coefficient c of friction, over that of the scene, from the plate's lost speed v_0 - v and its distance s:
-/// the rate of rate_of() is (v_0 - v) / s.
+/// The coefficient c of friction, over that of the scene, from the plate's lost speed v_0 - v and its
+/// distance s: the rate of rate_of() is (v_0 - v) / s.
 double drag_back(const Plate& plate) {
   const auto fluid = start_of(plate);
   for (int k = 0; k < 20; ++k) fluid->step_frame();  // lets the levels form

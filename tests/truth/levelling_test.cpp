@@ -117,8 +117,8 @@ double cell_back(const Tank& tank, double speed) {
   return back;
 }
 
-/// At level 0 the recovered viscosity is not within 15 % of the given one, so the bound is wide. Without the random
-/// shifts by which the effect viscosity loosens the lattice, the ratio is 1.83.
+/// At level 0 the recovered viscosity is not within 15 % of the given one, so the bound is wide. Without the
+/// random shifts by which the effect viscosity loosens the lattice, the ratio is 1.83.
 TEST(TruthLevelling, ACreepingVortexUnderGravityDecays) {
   NEEDS_EFFECTS;
   const double back = cell_back({}, 0.3);

@@ -93,8 +93,8 @@ inline void begin_with(State start, int level, double d, sim::Scene& scene, sim:
   options.start = std::move(start);
 }
 
-/// Turns on temporal acceleration for any method, with `beta` as the lowest probability that a particle is solved
-/// in a frame; beta 1 turns nothing on.
+/// Turns on temporal acceleration for any method, with `beta` as the lowest probability that a particle is
+/// solved in a frame; beta 1 turns nothing on.
 inline void rest_at(double beta, sim::SimulationOptions& options) {
   if (beta == 1) return;
   options.temporal.always = true;

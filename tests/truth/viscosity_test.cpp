@@ -61,8 +61,8 @@ std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
   return sim::make_simulation(scene, options);
 }
 
-/// The viscosity that follows from the decay of the wave in the column's middle third, over that of the scene. At
-/// the start the fastest particle moves two spacings per decay time.
+/// The viscosity that follows from the decay of the wave in the column's middle third, over that of the
+/// scene. At the start the fastest particle moves two spacings per decay time.
 double viscosity_back(const Wave& wave) {
   const auto fluid = column_of(wave);
   for (int k = 0; k < 10; ++k) fluid->step_frame();  // lets the levels form

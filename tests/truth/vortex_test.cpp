@@ -9,8 +9,8 @@ using namespace truth_test;
 
 constexpr double speed = 1;  ///< m/s, the largest at the start
 
-/// Bound of the viscosity that a method has in addition to the given nu, over d U (spacing times largest speed).
-/// Measured: 0.10 to 0.23, at two substeps.
+/// Bound of the viscosity that a method has in addition to the given nu, over d U (spacing times largest
+/// speed). Measured: 0.10 to 0.23, at two substeps.
 constexpr double own_most = 0.35;
 
 void report_viscosity(const Run& run, const TruthFile& file, double nu, double measured, double d,

@@ -19,7 +19,8 @@ class BodiesApart {
     return {{0, length / 2, 0}, radius, at, {0, 0, 0, 1}, {}, {}};
   }
 
-  /// `mass`: in units of m_*, 0 for a body that is not free. Returns the body's index.
+  /// `mass`: in units of m_* (the mass of a particle of level 0), 0 for a body that is not free. Returns the
+  /// body's index.
   int add(const Body& body, float mass, float friction = 0) {
     FreeBody free{};
     free.mass = mass;

@@ -77,8 +77,9 @@ SIM_TEST(Columns, SplitAndMergeByTheRuleOfTheirRow) {
                 columns(Column::Waiting, Column::Age, Column::Temperature, Column::Swirl).bits);
 }
 
-/// The values of three particles in one column (8, 2, 6) after `change`: particle 0 splits or is shared out,
-/// particles 1 and 2 merge with each other or each with a half of particle 0.
+/// The values of three particles in one column (8, 2, 6) after `change`, in which particle 0 splits or is
+/// shared out, and particles 1 and 2 merge with each other or each with a half of particle 0. `rule` says how
+/// the column gives values to new and merged particles: by their mean or sum, by the larger value, or as 0.
 std::vector<float> after(Descent rule, void (*change)(const RuledColumns<float>&)) {
   std::vector<float> values{8, 2, 6};
   RuledColumns<float> column{};

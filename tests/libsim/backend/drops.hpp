@@ -10,7 +10,7 @@
 
 namespace sim::SIM_BACKEND {
 
-constexpr float h = 0.3f;  // h_*; d_* = 0.15 m, cells of 1.5 m
+constexpr float h = 0.3f;  // support of level 0, m; its spacing is 0.15 m, cells are 1.5 m wide
 
 struct Drop {
   Vec3 x, v;

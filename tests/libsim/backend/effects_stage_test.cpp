@@ -134,7 +134,9 @@ SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWorkBeyondTension) {
   }
 }
 
-/// The pair force of Cohesion, summed over still water behind the wall without skin or normal.
+/// The wall's pull must be the pair force of Cohesion summed over still water behind the wall. `skin` is the
+/// share of the attraction at the particle's density, 0.9 rho_0; for the water behind the wall the share and
+/// the surface normal are 0.
 SIM_TEST(Adhesion, AWallPullsAsTheStillWaterBehindItWould) {
   NEEDS_EFFECTS;
   constexpr double h = 0.2, skin = 0.5, normal = -0.7, tension = 20;

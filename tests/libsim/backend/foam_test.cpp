@@ -135,7 +135,8 @@ SIM_TEST(Foam, TheVolumeAtFullPotentialIsTheRateForFineAndForCoarseWater) {
     Water water(cube(1, 2, h), true, [](Vec3 x) { return Vec3{5, 0, 3 * (x.x - 1.5f)}; });
     water.rules.approach = {0, 1e-6f};
     EXPECT_NEAR(emitted_share(water.births(), water, 1), 1, 0.02) << h;
-    // A ramp this wide makes the potential small. The volume per rate must be the same for twice the rate.
+    // A ramp this wide makes the potential small. The emitted volume over the rate must then be equal for the
+    // rate and for twice the rate.
     water.rules.approach = {0, 1e4f};
     const double some = emitted_share(water.births(), water, 1);
     water.rules.rate *= 2;

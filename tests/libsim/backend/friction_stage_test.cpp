@@ -32,7 +32,8 @@ SIM_TEST(Friction, SlowsWhatSlidesWithinASpacingOfAWallAtItsRate) {
 
 SIM_TEST(Friction, AnyLatticeFeelsTheSameStress) {
   NEEDS_EFFECTS;
-  // A column of a lattice loses the momentum rho_0 c u dt per area d^2.
+  // A column of a lattice loses the momentum rho_0 c u dt per area d^2, with c = `drag` and its speed u along
+  // the floor.
   for (const float d : {0.05f, 0.1f}) {
     for (const float lowest : {0.1f, 0.5f, 0.9f}) {
       std::vector<Vec4> points;
@@ -71,8 +72,8 @@ Body body_of(Vec3 half, float radius) {
   return out;
 }
 
-/// Random particles round a body: their lost momentum over rho_0 c u dt, which is the area of the faces along
-/// u.
+/// Momentum that random particles round a body lose, over rho_0 c u dt (c: coefficient of friction, u: their
+/// velocity), which is the area of the faces along u.
 double face_of(const Body& body, float d, float reach) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> at(-reach, reach);

@@ -10,7 +10,9 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// Targets after grading of particles without neighbours, all of level 1, with N = 4.
+/// Target levels of particles of level 1 after the pass that applies `dead_band`: a target coarser than 1
+/// needs N (1
+/// - s) of at least 2 + dead_band. There are N = 4 levels; s is the saliency.
 std::vector<std::uint8_t> graded(const std::vector<float>& saliency, float dead_band) {
   FluidState state;
   state.guards.resize(1);
@@ -33,7 +35,7 @@ std::vector<std::uint8_t> graded(const std::vector<float>& saliency, float dead_
 }
 
 SIM_TEST(LevelRules, TheDeadBandHoldsBackOnlyTheWayToCoarser) {
-  // N (1 - s): 0.4, 1.0, 1.9, 2.1, 2.2, 2.3, 2.9, 3.1, 4.
+  // With N = 4 levels, N (1 - s) is 0.4, 1.0, 1.9, 2.1, 2.2, 2.3, 2.9, 3.1, 4.
   const std::vector<float> s{0.9f, 0.75f, 0.525f, 0.475f, 0.45f, 0.425f, 0.275f, 0.225f, 0};
   EXPECT_EQ(graded(s, 0), (std::vector<std::uint8_t>{0, 1, 1, 2, 2, 2, 2, 3, 3}));
   EXPECT_EQ(graded(s, 0.25f), (std::vector<std::uint8_t>{0, 1, 1, 1, 1, 2, 2, 3, 3}));

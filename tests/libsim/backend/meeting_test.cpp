@@ -266,7 +266,8 @@ SIM_TEST(Meeting, ABallRestsInAWedge) {
   }
 }
 
-/// The constraints contradict each other: walls have priority, and the body leaves as soon as it can.
+/// A box moves down through the floor and later up again, with a free body between it and the floor. Both
+/// cannot be kept out: the floor has priority, and the body must not be flung away.
 SIM_TEST(Meeting, WhatIsPinnedStaysInTheTank) {
   for (const bool box : {true, false}) {
     BodiesApart two;

@@ -1,4 +1,5 @@
-/// Two stranded particles that merge with the help of a coarser one.
+/// Two particles that found no partner to merge with (stranded), and a coarser particle that helps: each
+/// merges with a half of it.
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-/// The features of Eq. 1-8 against closed forms.
+/// The features of saliency (Eq. 1-8 of the paper) against closed forms.
 
 #include <random>
 
@@ -14,7 +14,8 @@ Looks one_eye(const View& view, const GBuffer* seen, Vec3d direction = {0, 0, -1
   return {{{{{0, 0, 0}, direction, true}, view, seen}}};
 }
 
-/// The parts of saliency of particles at these places; `temporal` is f_T before occlusion, the same for all.
+/// The parts of saliency of particles at these places. `temporal`, the same for all, is the temporal feature
+/// before it is divided by the attenuation gamma_t of hidden particles: f_T gamma_t of Eq. 6.
 std::vector<SaliencyParts> parts_of(const std::vector<Vec4>& points, const Looks& looks, float temporal = 0,
                                     const Readings& readings = {}) {
   SaliencyInput input;
@@ -278,7 +279,8 @@ SIM_TEST(Occlusion, AttenuationHasItsClosedForm) {
   EXPECT_NEAR(literal.at(10), 148.41f, 0.01f);
 }
 
-/// d_t of the particles, computed back from f_T: f_T = 1 / e^(d_t / 2) for f_T gamma_t = 1.
+/// How deep the particles lie behind the visible surface, m (d_t of Eq. 8). Computed back from the temporal
+/// feature f_T, which is 1 / e^(d_t / 2) here: 1 over the attenuation.
 std::vector<double> thicknesses(const std::vector<Vec4>& points, const View& view, const GBuffer& g) {
   std::vector<double> out;
   for (const auto& part : parts_of(points, one_eye(view, &g), 1)) {

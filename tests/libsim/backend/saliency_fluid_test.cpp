@@ -172,7 +172,8 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
   EXPECT_GT(after, 0.63 * before);
 }
 
-/// Swirl counts from the rate `from` on, fully at twice that, and decays like the feature.
+/// In the temporal feature swirl counts from the rate `from` on, fully at twice that, and fades over frames
+/// as the rest of the feature does.
 SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
   const auto unrest_with = [](SwirlSeen swirl, const std::vector<float>& rate, float before = 0.5f) {
     Seen seen = prepare(broken_dam(), before_dam);

@@ -1,4 +1,5 @@
-/// From F to s and levels, levels by gaze alone, and the gradients of Eq. 6.
+/// Saliency s and levels that follow from the combined feature F, levels by gaze alone, and the gradients of
+/// Eq. 6 of the paper.
 
 #include <random>
 
@@ -16,7 +17,8 @@ struct Judged {
   SaliencyRange range;
 };
 
-/// s and levels of the values F; the levels before are 2 and s before is 0.625.
+/// Saliency s and levels of particles with the combined features F; before, their levels are 2 and s is
+/// 0.625.
 Judged judge(const std::vector<float>& F, SaliencyNormaliser& normaliser, Normalisation reading) {
   const int n = static_cast<int>(F.size());
   Array<float> combined, s;

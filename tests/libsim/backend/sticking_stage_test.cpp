@@ -59,8 +59,8 @@ FluidState honey_round(const std::vector<Vec4>& points, const std::vector<Body>&
   return state;
 }
 
-/// Change of momentum, m_* m/s, and of angular momentum about the ball's middle, m_* m2/s; `all`: sum of the
-/// magnitudes of the particles' changes.
+/// Change of momentum, m_* m/s, and of angular momentum about the ball's middle, m_* m2/s, where m_* is the
+/// mass of a particle of support 0.2 m; `all`: sum of the magnitudes of the particles' changes of momentum.
 struct Exchange {
   Vec3 momentum, spin;
   float all;
@@ -188,7 +188,7 @@ SIM_TEST(Sticking, BetweenIsAShare) {
   EXPECT_NEAR(left[1], 1 / (1 + steps / 2), 1e-4f);
 }
 
-/// The ball as a free body of this mass in m_*.
+/// The ball as a free body of this mass, in masses of a particle of level 0.
 FreeBody free_of(float units) {
   FreeBody out{};
   out.mass = units;

@@ -36,7 +36,7 @@ void expect_momentum(const MomentumSum* sums, const std::vector<Momentum>& expec
   ASSERT_NE(sums, nullptr);
   std::vector<MomentumSum> found(expected.size());
   copy_to_host(found.data(), sums, found.size() * sizeof(MomentumSum));
-  // A particle's momentum is truncated to whole units of 2^-20 m_* m/s.
+  // A particle's momentum is truncated to whole units of 2^-20 m_* m/s (m_*: mass of a particle of level 0).
   const auto near = [](std::uint64_t sum, double momentum, double mass) {
     EXPECT_NEAR(static_cast<double>(static_cast<std::int64_t>(sum)) / 1048576, momentum, mass / 1048576);
   };
@@ -51,7 +51,7 @@ void expect_momentum(const MomentumSum* sums, const std::vector<Momentum>& expec
 SIM_TEST(CellMomentum, HoldWhoseTheyAreByTheirOwnCells) {
   const auto all = drops(3000, 4);
   auto state = state_of(all);
-  // 0: resting, 1: solved, 2: solved apart.
+  // 0: resting, 1: solved, 2: solved, but left out of sums over solved particles (solved_apart).
   std::vector<std::uint8_t> active(all.size());
   std::vector<int> start(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -59,7 +59,7 @@ SIM_TEST(Vorticity, WhatTurnsAsAWholeIsNotPushed) {
   EXPECT_LT(length(xyz(v[middle]) - xyz(before[middle])), 0.02f * 6 * state.parameters.dt);
 }
 
-/// The curl at mixed particle sizes is that of the flow too.
+/// Among particles of mixed sizes too, the computed curl is that of the flow.
 SIM_TEST(Vorticity, ACrowdOfMixedSizesHasTheCurlOfItsFlow) {
   NEEDS_EFFECTS;
   const auto points = mixed_ball();
@@ -113,7 +113,8 @@ SIM_TEST(Vorticity, AVortexIsTurnedOnByItsOwnCurl) {
   }
 }
 
-/// The same vortex with random velocities added: the slopes must follow the mean curl.
+/// A Lamb-Oseen vortex with random velocities added: the slopes of the curl must follow its mean, not the
+/// noise.
 SIM_TEST(Vorticity, AVortexInUnrestIsTurnedOnByItsOwnCurl) {
   NEEDS_EFFECTS;
   constexpr float d = 0.05f, core2 = 16 * d * d;

@@ -60,7 +60,8 @@ inline std::vector<sim::RenderParticle> particles(std::int64_t frame, int nx = 1
   return out;
 }
 
-/// Three kinds of frames in turn: without any account, with a given tau, and with everything.
+/// Accounts of three kinds of frames in turn: empty, with a tau that was given and so has no frame rate, and
+/// with everything.
 inline sim::FrameAccount account(std::int64_t frame) {
   sim::FrameAccount out;
   if (frame % 3 == 0) return out;

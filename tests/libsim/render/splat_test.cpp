@@ -135,7 +135,7 @@ TEST_F(SplatGl, LargeFootprintsMatchBruteForce) {
 }
 
 TEST_F(SplatGl, LargeFootprintsMatchBruteForceHoweverTheyAreSplit) {
-  // The kind of driver sets the default split.
+  // thread_px decides how a footprint is split between invocations; its default depends on the driver.
   auto options = exact_options();
   const auto particles = cloud(25, 0.4F, 1.2F, 2);
   for (const int thread_px : {1, 16, 64, 400}) {

@@ -53,8 +53,8 @@ const std::vector<Domain> domains{{{-4, -4, -4}, {4, 4, 4}},
                                   {{500, 500, 500}, {530, 530, 530}},
                                   {{-3e9f, -3e9f, -3e9f}, {3e9f, 3e9f, 3e9f}}};
 
-/// Neighbour lists of points that all have the support radius of the first, or if `mixed`, of points of several
-/// levels, of which level 0 has the support radius `finest`.
+/// Neighbour lists of points that all have the support radius of the first, or if `mixed`, of points of
+/// several levels, of which level 0 has the support radius `finest`.
 Listed list(const std::vector<Vec4>& points, const Domain& domain, bool reversed = false,
             bool mixed = false) {
   std::vector<Vec4> at = points;
@@ -211,9 +211,9 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
 }
 
 #ifndef SIM_CUDA
-/// libsim/neighbors/candidates.hpp caches for each thread the particles of the window of cells that it searched
-/// last. One thread builds lists of two simulations in turn, and particles move within their cells between
-/// builds: the windows are the cached ones, but the particles in them are not.
+/// libsim/neighbors/candidates.hpp caches for each thread the particles of the window of cells that it
+/// searched last. One thread builds lists of two simulations in turn, and particles move within their cells
+/// between builds: the windows are the cached ones, but the particles in them are not.
 SIM_TEST(S14NeighbourList, OfTwoSimulationsInOneThreadAreTheirOwn) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
@@ -272,8 +272,8 @@ struct FirstBuild {
 };
 
 SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
-  // On the first build a list has room for some 55 neighbours; longer lists go to a store common to all. Nothing
-  // grows, because there is only one build.
+  // On the first build a list has room for some 55 neighbours; longer lists go to a store common to all.
+  // Nothing grows, because there is only one build.
   std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
   const std::vector<Vec4> few = random_points(40, 0.05f, 0.3f, 4);
   for (const Vec4& p : few) points.push_back({p.x + 7, p.y, p.z, p.w});

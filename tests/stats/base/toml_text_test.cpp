@@ -263,8 +263,8 @@ TEST(TomlTextAgrees, WithTheParserOnBrokenDocuments) {
     ++refused;
     const auto foreign = [](char c) { return static_cast<unsigned char>(c) >= 0x80; };
     if (error.find("outside ASCII") != std::string::npos) continue;
-    // The insertion separated \r from
-    // , or put a quote, bracket or = directly behind a value or a key.
+    // The insertion parted a carriage return from its line feed, or put a quote, bracket or = directly behind
+    // a value or a key.
     EXPECT_THAT(error, AnyOf(HasSubstr("control character"), HasSubstr(" behind a "))) << text;
     if (std::none_of(text.begin(), text.end(), foreign)) {
       EXPECT_FALSE(parses(text)) << text;

@@ -20,7 +20,8 @@ using oracle::number;
 using stats::Alternative;
 using stats::binomial_test;
 
-/// Scale of p-values: so small that they are compared relative to their size.
+/// Scale of p-values for the comparison with reference answers. It is so small that only errors relative to p
+/// count.
 constexpr double p_scale = 1e-290;
 
 Alternative side(const std::string& name) {

@@ -23,7 +23,8 @@ using stats::repeated_anova;
 using Values = std::vector<double>;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Scale of p-values: so small that they are compared relative to their size.
+/// Scale of p-values for the comparison with reference answers. It is so small that only errors relative to p
+/// count.
 constexpr double p_scale = 1e-290;
 
 struct Table {

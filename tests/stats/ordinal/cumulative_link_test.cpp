@@ -52,7 +52,7 @@ std::map<std::string, std::vector<double>> read_columns(const std::string& name)
 struct Reported {
   stats::OrdinalFit fit;
   double sd = nan;
-  double reduced = 0;  ///< log-likelihood without the method
+  double reduced = 0;  ///< log-likelihood of the model without the predictor method
 };
 
 stats::Result<Reported> fit_model(const std::string& model, const json& input) {

@@ -148,7 +148,8 @@ TEST(PenalisedOrdinal, SaysWhyAndIsOfLogOdds) {
       std::invalid_argument);
 }
 
-/// Fits of many studies of six people.
+/// Fits of many studies of six people: sums, over the fitted studies, of each effect's error and its square,
+/// and the number of 95 % intervals that hold the effect.
 struct Tally {
   int studies = 0, separated = 0, refused = 0;
   std::vector<double> error = std::vector<double>(methods - 1), square = error, held = error;
@@ -193,7 +194,7 @@ TEST(PenalisedOrdinal, FewStudiesOfSixPeopleAreLeftWithoutEstimates) {
   }
 }
 
-// The table of docs/statistics.md.
+// Prints the table of docs/statistics.md about separated answers.
 TEST(PenalisedOrdinalSlow, EstimatesOfSixPeopleAreNearTheTruth) {
   for (const auto* truth : {&no_effect, &one_worse, &rare, &far_apart}) {
     const auto got = fit_many(*truth, 1000);

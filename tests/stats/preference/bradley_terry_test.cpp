@@ -22,9 +22,11 @@ using stats::BradleyTerryMethod;
 using stats::Connection;
 using Values = std::vector<double>;
 
-/// Scale of p-values: so small that they are compared relative to their size.
+/// Scale of p-values for the comparison with reference answers. It is so small that only errors relative to p
+/// count.
 constexpr double p_scale = 1e-290;
-/// Precision of brglm2, from oracle/README.md.
+/// Relative precision of the reference's bias-reduced (Firth) estimates, by R's brglm2; from
+/// oracle/README.md.
 constexpr double firth_rtol = 1e-5;
 
 struct Table {
@@ -107,7 +109,7 @@ TEST(BradleyTerry, AgreesWithTheReferenceAnswers) {
     }
     ASSERT_TRUE(reduced) << c.at("id") << ": " << reduced.reason();
     expect_list(c, "firth_lambda_ref1", reduced->lambda_ref1, 1, firth_rtol);
-    // The default uses the first of the two estimates that is finite.
+    // The default is the maximum-likelihood estimate if it is finite, otherwise the bias-reduced one.
     const auto chosen = bradley_terry(wins, items);
     EXPECT_EQ(chosen->bias_reduced, !likely) << c.at("id");
     EXPECT_EQ(chosen->lambda_ref1, (likely ? *likely : *reduced).lambda_ref1) << c.at("id");

@@ -63,7 +63,9 @@ TEST(CircularTriads, AnOrderHasNoneAndACircleTheMost) {
 }
 
 TEST(CircularTriads, KendallsTableOfSixItems) {
-  // Kendall 1962, appendix table 9: frequency of d among 2^15 sets of answers, n = 6.
+  // Kendall 1962, appendix table 9: how many of the 2^15 sets of answers to all pairs of six items have d =
+  // 0, 1,
+  // ... circular triads.
   const std::vector<double> table{720, 960, 2240, 2880, 6240, 3648, 8640, 4800, 2640};
   ASSERT_EQ(std::accumulate(table.begin(), table.end(), 0.0), 32768);
   uniformity::Draws draws(2);

@@ -265,8 +265,8 @@ TEST(LackOfFit, AsksForAnEvenRiseOfTheScoresAlsoWhenTheyAreRounded) {
   EXPECT_GT(observer, 0.95 * studies);
 }
 
-// Scores level off towards the top of the scale. A quadratic that follows them misses the level: with all
-// settings a would be 16.6 here.
+// Scores level off towards the top of the scale. A quadratic that follows them there misses the frame rate at
+// which the score is 4: with all settings the estimate of a would be 16.6 instead of 18 here.
 TEST(DirectFit, WhatLiesFarAboveTheCurveDoesNotBendIt) {
   constexpr int pilots = 20;
   double mean = 0;

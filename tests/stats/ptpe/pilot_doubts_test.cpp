@@ -33,7 +33,8 @@ Codes doubts_of(const std::vector<stats::PilotRating>& ratings, int resamples = 
   return codes;
 }
 
-/// A pilot with its scores changed by `score`.
+/// A simulated pilot of 16 people in which `score` gives each rating its score, rounded and limited to 1
+/// to 7.
 std::vector<stats::PilotRating> changed(const std::function<double(const stats::PilotRating&)>& score) {
   auto ratings = simulated::pilot({}, 16, 3);
   for (auto& rating : ratings) rating.score = std::clamp(std::round(score(rating)), 1.0, 7.0);

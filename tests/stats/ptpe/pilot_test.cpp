@@ -76,7 +76,7 @@ void expect_fit(const stats::Result<stats::ExponentialFit>& got, const json& exp
   EXPECT_NEAR(std::sqrt(got->covariance->bb), expected["se"][1], oracle::bound(expected["se"][1], rtol, 1));
 }
 
-/// Predictors of the straight form: log mu and delta.
+/// Predictors of the model in which scores are linear in log mu and delta (the straight form).
 std::vector<stats::Predictor> predictors(const std::vector<PilotRating>& ratings) {
   std::vector<stats::Predictor> out{{"log(fps_mean)", {}}, {"fps_sd", {}}};
   for (const auto& r : ratings) {
@@ -86,7 +86,8 @@ std::vector<stats::Predictor> predictors(const std::vector<PilotRating>& ratings
   return out;
 }
 
-/// The straight form is ordinary least squares on log mu and delta.
+/// Compares the straight form (scores linear in log mu and delta) with ordinary least squares by the
+/// reference.
 void expect_straight(const json& item, const std::vector<PilotRating>& ratings) {
   const auto& expect = item.at("expect");
   if (!oracle::asks(expect, "ols_coef")) return;

@@ -74,7 +74,7 @@ TEST(Placement, TwoThirdsOfTheTrialsGiveTheSameWidthOfB) {
   EXPECT_GE(placed.a_covered, 0.8);
 }
 
-/// The tables of docs/statistics.md, "Adaptive placement".
+/// Prints the tables of docs/statistics.md, "Adaptive placement".
 TEST(PlacementSlow, WidthsBesideFixedSettings) {
   int same_width = 0, truths = 0;
   for (const PlacementTruth truth :

@@ -23,7 +23,8 @@ using surfaces::Population;
 using surfaces::Truth;
 
 constexpr std::array names{"solver", "direct", "contour",
-                           "ordinal"};  // solver: the direct estimate with the spanned interval
+                           "ordinal"};  // solver: the direct estimate, with intervals that span
+                                        // those of direct and contour
 constexpr double widest = 0.35;         // the default of vip-stats fit-ptpe --max-width
 
 /// An estimator's result for one pilot.

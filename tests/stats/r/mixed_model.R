@@ -1,5 +1,5 @@
 # Linear mixed models of simulated studies of Task 1 by lme4 and lmerTest: all answers of a study, with dropout, with
-# several visits, with a variance at its bound, with one n_*. Prints mixed_model.json:
+# several visits, with a variance at its bound, with one number of particles (n_*). Prints mixed_model.json:
 #   Rscript mixed_model.R > mixed_model.json
 suppressMessages(library(lmerTest))
 set.seed(15)
