@@ -27,7 +27,8 @@ inline std::string shipped_text(const std::string& name) {
 
 inline std::size_t found_in(const std::string& text, const std::string& what) {
   const auto at = text.find(what);
-  if (at == std::string::npos) throw std::runtime_error("the text no longer holds: " + what);
+  if (at == std::string::npos)
+    throw std::runtime_error("the text no longer holds: " + what + "; mend: adapt the edit in the test");
   return at;
 }
 

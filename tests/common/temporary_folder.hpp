@@ -22,7 +22,9 @@ class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
     std::string name = (where / "vip-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+    if (!::mkdtemp(name.data()))
+      throw std::runtime_error("cannot make the folder " + name +
+                               "; mend: free its disk and allow writing beside it");
     path_ = name;
   }
   ~TemporaryFolder() {

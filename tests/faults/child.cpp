@@ -41,7 +41,8 @@ constexpr const char* broken = "!";  // prefix of errors that are not base::Erro
 Ended run_child(const CallPlan& plan, const std::function<void()>& command) {
   plan.log->clear();
   const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("no process can be made");
+  if (child < 0)
+    throw std::runtime_error("no process can be made by fork; mend: end other processes or raise ulimit -u");
   if (child == 0) work(plan, command);
   int status = 0;
   ::waitpid(child, &status, 0);

@@ -19,7 +19,7 @@ Lines session_content(const fs::path& database);
 Lines database_content(const fs::path& database);
 /// The permissions of each participant.
 Lines permission_content(const fs::path& database);
-/// The personal file beside a database; empty if there is none.
+/// Rows of the file of personal data beside a database; empty if there is none.
 Lines personal_content(const fs::path& database);
 /// Name and SHA-256 of each file in a folder except export.sha256. Lines that may hold a time of day or a
 /// path are left out of the hash.

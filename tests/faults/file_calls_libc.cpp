@@ -63,7 +63,8 @@ std::string bytes_at(int fd, std::int64_t at, std::size_t size) {
   return bytes;
 }
 
-/// `half`: does half of the work before the program is killed.
+/// Writes by `whole`, or by `half`, which writes half of the bytes, if the program is to be killed in this
+/// call.
 template <class Half, class Whole>
 ssize_t write_with(int fd, std::int64_t at, Half half, Whole whole) {
   if (!watched(fd)) return whole();
@@ -104,7 +105,8 @@ int resize_with(int fd, Need need, Work work) {
   return done;
 }
 
-/// Adds, changes or removes a name.
+/// Does `work`, a call that adds, changes or removes a name (from `from` to `to`, if it has a `to`). Does not
+/// count if neither path is watched: then both are empty.
 template <class Work>
 int change_name(Done kind, const std::string& from, const std::string& to, Need need, Work work) {
   if (from.empty() && to.empty()) return work();

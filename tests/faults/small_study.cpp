@@ -137,7 +137,7 @@ void check_cleaned(const fs::path& database, std::vector<std::string> left, bool
   if (left.empty()) return;
   std::string lines;
   for (const std::string& line : left) lines += line + "; ";
-  throw base::Error(database.string(), "is not clean: " + lines, "none");
+  throw base::Error(database.string(), "is not clean: " + lines, "let the command that ran clean them up");
 }
 
 void play(const fs::path& database, const std::vector<Person>& people, int units) {

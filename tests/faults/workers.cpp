@@ -53,7 +53,7 @@ void make_schemas() {
 
 bool spread(int jobs, const std::function<void(int, const Say&)>& work, const Say& take) {
   int pipe[2];
-  if (::pipe(pipe) != 0) throw std::runtime_error("no pipe can be made");
+  if (::pipe(pipe) != 0) throw std::runtime_error("no pipe can be made; mend: raise ulimit -n");
   make_schemas();
   std::fflush(stdout);
   std::vector<pid_t> children;

@@ -305,7 +305,7 @@ TEST(Effects, ExplainStatesTheLimitsOfThickFluid) {
   EXPECT_THAT(says(), Not(HasSubstr(words)));
 }
 
-/// The numbers in the comments of the demo scenes.
+/// Numbers that comments of the demo scenes give must be those that scales_of() computes.
 TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   NEEDS_EFFECTS;
   const auto scales = [](const char* name) {

@@ -220,7 +220,7 @@ TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   EXPECT_NE(at[0].velocity_m_s[1], 0);
 }
 
-/// Fixed obstacles run only their usual passes.
+/// If all obstacles are fixed, no pass runs that only free obstacles need.
 TEST(FreeObstacles, CostNothingWhereNoneIs) {
   auto scene = pool_with(free_sphere(500));
   const auto launches = [](const sim::Scene& of) {

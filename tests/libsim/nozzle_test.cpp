@@ -73,7 +73,7 @@ TEST(LayersDue, KeepTheFlowWhenTheSpacingChangesFromFrameToFrame) {
     volume += due.count * layer.sites * std::pow(spacing, 3);
     poured.length_m += due.count * layer.pitch_m;
     const double open_s = (frame / 200 * 80 + std::min(frame % 200 + 1, 80)) / 60.0;
-    // The error is at most half of the coarsest layer.
+    // The poured volume is off by at most half a layer of the coarsest level.
     ASSERT_NEAR(volume, flow * open_s, 0.51 * 0.31 * flow / nozzle.speed_m_s) << frame;
   }
 }
@@ -313,7 +313,7 @@ void ledger_closes(Backend backend) {
                 sim::method_name(method).c_str(), volume, flow, static_cast<long long>(report.particles),
                 static_cast<long long>(report.mass_units), static_cast<long long>(report.reservoir),
                 report.density_max);
-    // The error is at most half a layer of the coarsest level after 60 open frames.
+    // After 60 open frames the poured volume is off by at most half a layer of the coarsest level.
     const double coarsest = sim::jet_layer(nozzle, 2 * finest).pitch_m * flow / nozzle.speed_m_s;
     EXPECT_NEAR(volume, flow, 0.51 * coarsest);
   }

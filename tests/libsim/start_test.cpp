@@ -157,7 +157,8 @@ void ids_and_gaze_targets_follow_the_order_of_the_particles(Backend backend) {
   std::vector<sim::ParticleSaliency> by_gaze;
   fluid->measure_gaze_targets({{eye}}, by_gaze);
   check_order();
-  // FovFluid finds the same targets at the start of its first frame, before anything has moved.
+  // FovFluid finds the targets that measure_gaze_targets() found, at the start of its first frame, before
+  // anything has moved.
   const auto follower = dam.start(MethodKind::FovFluid, state, 0);
   follower->look({{eye}});
   std::map<int, std::pair<float, int>> expected;

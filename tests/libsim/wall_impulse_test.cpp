@@ -283,7 +283,8 @@ void a_side_of_a_box_is_pressed_by_its_depth(Backend backend) {
     for (std::size_t band = 0; band < 3; ++band)
       force[band] += account.obstacle_gauges[2 * band].push[0] / (frames * pool.scene.frame_dt_s);
   }
-  // The settled level is a little low (docs/results.md).
+  // Settled water stands a little lower than its volume over the floor (docs/results.md), so its level is
+  // measured.
   std::vector<double> heights;
   for (const auto& p : fluid->read_state()) heights.push_back(static_cast<double>(p.y_m));
   std::sort(heights.begin(), heights.end());

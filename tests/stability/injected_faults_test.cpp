@@ -85,7 +85,8 @@ State at_the_low_end(const sim::Simulation& fluid, std::size_t count) {
   return state;
 }
 
-/// Compares five frames with and without the fault.
+/// Runs five frames with and without the fault: `counted` must see the fault, and water far from it must
+/// hardly differ between the two runs.
 void expect_local(const char* fault, Backend backend, MethodKind method, const auto& inject,
                   const auto& counted) {
   const auto fluid = running_pool(backend, method), twin = running_pool(backend, method);

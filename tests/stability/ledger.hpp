@@ -117,7 +117,7 @@ class Ledger {
 
   sim::Simulation& fluid_;
   const sim::Scene& scene_;
-  double unit_mass_ = 0;  ///< m_*, kg
+  double unit_mass_ = 0;  ///< mass of a particle of level 0, m_*, kg
   std::int64_t particles_ = 0;
   std::int64_t mass_ = 0;     ///< in m_*
   double energy_ = 0;         ///< at the start, over m_*, m2/s2

@@ -109,7 +109,7 @@ double volume(const std::vector<ParticleState>& state) {
   constexpr double left_out = 0.005;
   double out = 1;
   for (const auto axis : {&ParticleState::x_m, &ParticleState::y_m, &ParticleState::z_m}) {
-    std::vector<float> places;  // one for each m_*
+    std::vector<float> places;  // one for each unit of mass: a particle counts 2^level times
     for (const auto& p : state) places.insert(places.end(), std::size_t{1} << p.level, p.*axis);
     std::sort(places.begin(), places.end());
     const auto skipped = static_cast<std::size_t>(left_out * static_cast<double>(places.size()));

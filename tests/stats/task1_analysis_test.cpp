@@ -98,7 +98,8 @@ TEST(Task1, MissingMethodsCostOnlyTheirPairs) {
 }
 
 TEST(Task1, HolmCountsRefusedTestsInItsFamily) {
-  // Only one person saw B: its tests are refused, but the other test is still corrected over three.
+  // Only one person saw B: its two tests are refused, but the test of A against C is still corrected over
+  // three.
   const auto table =
       table_of({{5, missing, 4}, {6, 6, 4}, {7, missing, 4}, {4, missing, 3}}, {"A", "B", "C"});
   const auto analysis = analyse_scores(table, quick_plan());

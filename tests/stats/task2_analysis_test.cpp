@@ -18,7 +18,7 @@ const PairPreference& pair_of(const PreferenceAnalysis& analysis, int a, int b) 
   for (const auto& pair : analysis.pairs) {
     if (pair.a == a && pair.b == b) return pair;
   }
-  throw std::logic_error("no such pair");
+  throw std::logic_error("the analysis has no pair of methods a and b; mend: name the lower index first");
 }
 
 TEST(Task2, CountsWhoWasChosenWhereverItStood) {

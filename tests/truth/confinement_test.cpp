@@ -209,7 +209,7 @@ void energy_is_bounded(Backend backend) {
   EXPECT_LT(mean[3], 1.25 * mean[2]);
 }
 
-/// rms speed after two seconds, m/s.
+/// rms speed of the water, m/s, after two seconds of the effect with this coefficient; 0: without the effect.
 double unrest_of(const Pool& pool, const State& start, double confinement) {
   const auto fluid = run_of(pool, start, confinement, usual, 0.01);
   for (int k = 0; k < 120; ++k) fluid->step_frame();

@@ -94,7 +94,8 @@ Collapse collapse(const Run& run, const std::filesystem::path& path, std::int64_
   return out;
 }
 
-/// Compares a run with the file, in the file's own scales.
+/// Compares the front or the height of a run, whichever the file has, with the file, in the file's own
+/// scales.
 void compare(const TruthFile& file, const Run& run, const Collapse& dam, std::int64_t n_star) {
   const Axis x = file.time(), y = file.length();
   auto time = dam.time, value = file.quantity == "dam_front" ? dam.front : dam.height;

@@ -68,7 +68,7 @@ std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& sc
   return sim::make_simulation(scene, options);
 }
 
-/// Positions, masses in m_*, velocities and temperatures, K above the reference.
+/// Position, velocity, mass in masses of a particle of level 0, and temperature, K above the reference.
 struct Warm {
   Vec3d at, v;
   double mass, theta;

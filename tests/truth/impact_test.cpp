@@ -19,7 +19,7 @@ double first_above(const std::vector<double>& t, const std::vector<double>& y, d
 }
 
 /// The file's sensor as a gauge: at least three spacings high and wide, moved away from floor and side walls
-/// where it would cross them. As wide as the wall if the file does not say where across.
+/// where it would cross them. As wide as the wall if the file has no sensor_across_m.
 sim::Gauge gauge_of(const TruthFile& file, const Vec3d& tank, double d) {
   const double size = std::max(file.has("sensor_size_m") ? file.number("sensor_size_m") : 0, 3 * d);
   const auto begin = [&](const std::string& key, double wall) {

@@ -56,7 +56,8 @@ Vec3d force_on(const Sunk& sunk) {
 void feels_its_displaced_water(Sunk sunk) {
   sunk.rest_frames = 180;
   const Vec3d force = force_on(sunk);
-  // With temporal acceleration the force is larger: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
+  // With temporal acceleration the force is larger: 1.01, 1.04 and 1.06 at level 3 with beta (the lowest
+  // probability that a particle is solved) 1, 0.8 and 0.67.
   EXPECT_NEAR(force[1], 1, sunk.beta < 1 ? 0.08 : 0.05);
   EXPECT_NEAR(force[0], 0, 0.05);
   EXPECT_NEAR(force[2], 0, 0.05);

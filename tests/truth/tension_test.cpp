@@ -17,7 +17,7 @@ std::array<double, 3> half_axes(const State& state) {
   }
   return out;
 }
-/// Logarithm of the stretch along y relative to the mean.
+/// Logarithm of the half axis along y over the geometric mean of the three half axes.
 double stretch(const State& state) {
   const auto a = half_axes(state);
   return std::log(a[1] / std::sqrt(a[0] * a[2])) * 2 / 3;

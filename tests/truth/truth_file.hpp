@@ -146,7 +146,7 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
       const std::string key = found[1];
       if (std::find(known.begin(), known.end(), key) == known.end())
         out.fail(line, "'" + key + "' is no key of a header",
-                 "see docs/results.md, or begin a remark with a capital");
+                 "use a key that docs/results.md lists, or begin a remark with a capital");
       if (!out.keys.try_emplace(key, found[2], line).second)
         out.fail(line, "'" + key + "' comes twice", "keep one");
     }
@@ -175,7 +175,7 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
   out.quantity = out.text("quantity");
   if (std::find(quantities().begin(), quantities().end(), out.quantity) == quantities().end())
     out.fail(out.keys.at("quantity").second, "no test measures '" + out.quantity + "'",
-             "docs/results.md lists the quantities");
+             "write one of the quantities that docs/results.md lists");
   out.gate();
   out.text("source");
   if (out.quantity == "wall_pressure") out.text("sensor_height_m");

@@ -195,7 +195,7 @@ SIM_TEST(Importance, IsEquation12To14OnALinearFlow) {
   const auto f = state.activation.importance.to_host();
   for (int x = 1; x < 3; ++x) {
     const float v = 2 * static_cast<float>(x);
-    const float energy = v * v;  // 2 m_* v^2 / 2
+    const float energy = v * v;  // 2 v^2 / 2, because a particle of level 1 has two units of mass
     const float slope =
         (static_cast<float>((x + 1) * (x + 1)) - static_cast<float>((x - 1) * (x - 1))) * 4 / 2;
     const float expected = 2 * (2 / (v + 0.1f) + 2 / (v + 0.1f) + slope / (energy + 0.005f));

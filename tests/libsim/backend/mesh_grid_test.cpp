@@ -109,7 +109,7 @@ SIM_TEST(MeshGrids, SolidsAskTheGrid) {
   EXPECT_NEAR(x.x, -2.5f, 0.01f);
 }
 
-/// A brick of triangles touches walls at the same contacts as the box.
+/// A brick of triangles must touch walls as the box of its size does: both are moved out by the same way.
 SIM_TEST(MeshGrids, ContactsAreThoseOfTheBox) {
   const OnHost mesh(brick, 0.04);
   Walls walls{};

@@ -59,15 +59,15 @@ SIM_TEST(Walls, LetThroughWhatMeetsThePlaneBeforeAnOpening) {
   EXPECT_FALSE(walls.hold_back(level, {-3, 1.5f, 0}, 0.01f));
   EXPECT_EQ(level.x, -3);
   EXPECT_TRUE(walls.through(level));
-  // One path leads through the hole and ends behind the wall outside it; the other hits the wall and ends
-  // level with the hole.
+  // `rising` passes the wall through the hole and ends higher than the hole; `late` meets the wall below the
+  // hole, although its path ends at the height of the hole.
   Vec3 rising{0.5f, 1.5f, 0};
   EXPECT_FALSE(walls.hold_back(rising, {-3, 4, 0}, 0.01f));
   EXPECT_EQ(rising.y, 4);
   Vec3 late{0.5f, 0.5f, 0};
   EXPECT_TRUE(walls.hold_back(late, {-0.5f, 1.4f, 0}, 0.01f));
   EXPECT_FALSE(walls.through(late));
-  // A particle that is through ignores the plane, but not the other walls.
+  // Behind the plane of the hole a particle is held by the other walls only.
   Vec3 after{-1, 0.5f, 0};
   EXPECT_FALSE(walls.hold_back(after, {-2, 0.3f, 0}, 0.01f));
   EXPECT_TRUE(walls.hold_back(after, {-2, -0.3f, 0}, 0.01f));

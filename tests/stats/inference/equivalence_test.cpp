@@ -90,7 +90,8 @@ TEST(EquivalenceTest, FollowsOrderShiftAndScale) {
 }
 
 TEST(EquivalenceTest, AtTheMarginTheErrorRateIsAlpha) {
-  // The one-sided p at the margin is uniform; with margins this wide the other test hardly ever decides.
+  // The true difference is one of the margins. The one-sided p against that margin is uniform; with margins
+  // this far apart the test against the other margin hardly ever decides.
   constexpr std::size_t sets = 3000;
   std::mt19937_64 random(17);
   std::vector<double> p;

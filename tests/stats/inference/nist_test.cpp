@@ -23,7 +23,8 @@ constexpr double eight_digits = 1e-8;
 /// The certified data sets of a class, such as "univariate".
 json certified(const std::string& kind) {
   std::ifstream in(oracle::folder() / "nist" / "certified.json");
-  if (!in) throw std::runtime_error("cannot read certified.json of NIST");
+  if (!in)
+    throw std::runtime_error("cannot read nist/certified.json of the oracle; mend: unset VIP_ORACLE_DIR");
   return json::parse(in).at(kind);
 }
 

@@ -48,7 +48,7 @@ std::map<std::string, std::vector<double>> read_columns(const std::string& name)
   return columns;
 }
 
-/// The values that every fit reports, named as in the oracle.
+/// A fit, and what tests compare besides: `sd` is the standard deviation of people, if the model has it.
 struct Reported {
   stats::OrdinalFit fit;
   double sd = nan;
