@@ -1,5 +1,5 @@
-/// Any bytes as the file of personal data beside a database: read, extended, renamed in and deleted from, or
-/// refused with base::Error.
+/// Any bytes as the file of personal data beside a database: its answers can be read, added to, moved to
+/// another participant and deleted, or base::Error refuses.
 #include "libstudy/store/personal.hpp"
 
 #include <cstdint>

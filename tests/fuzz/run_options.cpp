@@ -1,5 +1,5 @@
-/// Any bytes as a run's options in a database: refused with base::Error, or read. Options that were read must
-/// be equal after they are written and read again.
+/// Any bytes as the options of `vip-study run`, which a database stores for resuming: refused with
+/// base::Error, or read. Options that were read must be equal after they are written and read again.
 #include "libstudy/runner/run_options.hpp"
 
 #include <cstdint>

@@ -116,7 +116,7 @@ void the_total_stays(Backend backend) {
   NEEDS_EFFECTS;
   auto options = levels_test::options_for(backend, 288, levels_test::everywhere(3));
   options.temporal.always = true;
-  options.temporal.fixed_tau = std::log(0.3) / (2 * 0.02);  // beta = exp(2 b tau)
+  options.temporal.fixed_tau = std::log(0.3) / (2 * 0.02);  // beta = exp(2 b tau) with b = 0.02
   const auto fluid = sim::make_simulation(warm_pool(), options);
   const double before = fluid->report().heat.held;
   std::int64_t rested = 0;

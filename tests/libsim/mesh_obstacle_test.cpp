@@ -91,7 +91,7 @@ TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   base::write_file_atomically(mesh_file, box_text({1, 1, 1}, {1.6, 1.5, 1.5}));
   EXPECT_NE(sim::read_scene(scene_file).sha256, scene.sha256);
   EXPECT_THAT(alone, HasSubstr("obj = '''\nv 1 1 1\n"));
-  // Without a mesh file the text is the scene file's own.
+  // If the scene names no mesh file, scene_text() returns the scene file's text unchanged.
   base::write_file_atomically(scene_file, mesh_with(inline_brick()));
   EXPECT_EQ(sim::scene_text(scene_file), mesh_with(inline_brick()));
   const std::string one_line =

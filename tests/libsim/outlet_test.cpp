@@ -1,4 +1,4 @@
-/// Outlets in the scene's file and in the schedule; tests/stability has the cases S15.
+/// Outlets in the scene's file and in the schedule of passes; tests/stability tests the outflow (S15).
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

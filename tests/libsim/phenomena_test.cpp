@@ -1,4 +1,5 @@
-/// Phenomena that the paper shows in its scenes must appear: HiRes at n_* = 4k on the CPU, at 32k on CUDA.
+/// Phenomena that the paper shows in its scenes must appear: HiRes with 8 n_* particles, n_* = 4k on the CPU
+/// and 32k on CUDA.
 
 #include "tests/libsim/phenomena.hpp"
 

@@ -1,5 +1,5 @@
-/// Starts in the middle of a run: density projections and the velocity grid, which a checkpoint does not
-/// contain.
+/// Starts from the particles of a checkpoint in the middle of a run: the projections that press them to rest
+/// density, and the velocity grid of temporal acceleration, which a checkpoint does not contain.
 
 #include <gtest/gtest.h>
 

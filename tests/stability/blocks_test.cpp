@@ -1,4 +1,4 @@
-/// S13 and S17: few particles, and NaN and infinite values, on the CPU and on CUDA.
+/// Hard cases S13 (few particles) and S17 (NaN and infinite values), on the CPU and on CUDA.
 
 #include <limits>
 

@@ -68,8 +68,8 @@ void books_close(Backend backend, const Case& run, std::int64_t n_star, int fram
   // 1.06 were measured, because merged particles overlap and are pushed apart, and coarse water stands
   // higher. (A filter of velocity changes after splits and merges that was as strong on moving water as on
   // resting water gave 1.04, but with it dams lost energy.) With one level 1.0020 was measured: settled water
-  // starts still, and a jet makes it jitter, which adds energy. (Settled water that jittered too
-  // gave 1.0000.)
+  // starts still, and a jet makes it jitter, which adds energy. (Settled water that jittered too gave
+  // 1.0000.)
   EXPECT_LT(books.energy, adaptive ? 1.08 : 1.003);
 }
 

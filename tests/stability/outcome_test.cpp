@@ -1,4 +1,4 @@
-/// The outcome of a case's findings: passes and margins.
+/// What the findings of a hard case make its outcome: whether it passes, and by what share of each limit.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

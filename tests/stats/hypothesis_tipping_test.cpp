@@ -1,5 +1,6 @@
-/// Tipping points of H1 to H3: the shift, in points, by which missing answers would have to be worse than
-/// expected to change the decision of the plan. At the shift that is found the decision must change.
+/// Tipping points of H1 to H3 (hypotheses about the realism and sickness of methods): the shift, in points,
+/// by which missing answers would have to be worse than expected to change the decision of the plan. At the
+/// shift that is found the decision must change.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-/// H1 to H3 by the mixed model: against lmerTest (tests/stats/r/mixed_hypotheses.R), by hand, and beside the
-/// paired tests.
+/// H1 to H3 (hypotheses about the realism and sickness of methods) by the mixed model: against lmerTest
+/// (tests/stats/r/mixed_hypotheses.R), by hand, and beside the paired tests.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

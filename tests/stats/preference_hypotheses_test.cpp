@@ -1,4 +1,4 @@
-/// H4 to H6, and rules that apply to all six hypotheses.
+/// H4 to H6, the hypotheses about people's preferences between methods, and rules for all six hypotheses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

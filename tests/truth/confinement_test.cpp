@@ -1,4 +1,5 @@
-/// The effect vorticity recovered from its gain on a Lamb-Oseen vortex: c omega(r) round its axis.
+/// The coefficient c of the effect vorticity recovered from the speed that a Lamb-Oseen vortex gains: it
+/// accelerates by c omega(r) round its axis, where omega is the curl at the distance r.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"

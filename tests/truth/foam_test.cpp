@@ -1,5 +1,5 @@
-/// The recovered volume of foam: in rigidly rotating water, whose potential is known, and compared between
-/// methods.
+/// The volume of foam that water emits: in rigidly rotating water, against the rate at the known potential of
+/// foam, and compared between methods.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"

@@ -163,13 +163,13 @@ void walls_warm(const Pool& pool) {
 }
 
 /// Warmth theta = T cos(k x), k = pi / L: with the pressure, the acceleration is g beta T cos(k x) (1 -
-/// cosh(k y)
-/// + tanh(k H) sinh(k y)), where beta is the expansion per kelvin; its mean over y measures beta. The surface
-/// rises by a(H) t^2 / 2 and pulls back: to first order in k g t^2 this reduces the mean by g (1 - 1 / cosh(k
-/// H)) / H of its height. The forces of the last substep, which the pressure has not balanced yet, are in
-/// both measurements. Merges push the water too: with ten frames, and a second run in still water, 28 runs at
-/// mixed levels recovered 0.84 to 1.07. So the test takes twenty frames, and half the difference between a
-/// run that is warm on the left and one that is warm on the right: 0.88 to 0.94 over thirteen starts.
+/// cosh(k y) + tanh(k H) sinh(k y)), where beta is the expansion per kelvin; its mean over y measures beta.
+/// The surface rises by a(H) t^2 / 2 and pulls back: to first order in k g t^2 this reduces the mean by g (1
+/// - 1 / cosh(k H)) / H of its height. The forces of the last substep, which the pressure has not balanced
+/// yet, are in both measurements. Merges push the water too: with ten frames, and a second run in still
+/// water, 28 runs at mixed levels recovered 0.84 to 1.07. So the test takes twenty frames, and half the
+/// difference between a run that is warm on the left and one that is warm on the right: 0.88 to 0.94 over
+/// thirteen starts.
 void warm_water_rises(const Pool& pool) {
   NEEDS_EFFECTS;
   const Vec3d size{32 * d, 16 * d, 12 * d};

@@ -89,7 +89,7 @@ inline void begin_with(State start, int level, double d, sim::Scene& scene, sim:
   for (auto& p : start) p.level = level;
   options.n_star = static_cast<std::int64_t>(start.size() << level) / 8 + 1;
   scene.water.front().max_m = {2 * d * static_cast<double>(options.n_star), 2 * d,
-                               2 * d};  // 8 n_* cells of d
+                               2 * d};  // 8 n_star cubes of edge d
   options.start = std::move(start);
 }
 
@@ -98,7 +98,7 @@ inline void begin_with(State start, int level, double d, sim::Scene& scene, sim:
 inline void rest_at(double beta, sim::SimulationOptions& options) {
   if (beta == 1) return;
   options.temporal.always = true;
-  options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);  // beta = exp(2 b tau)
+  options.temporal.fixed_tau = std::log(beta) / (2 * 0.02);  // beta = exp(2 b tau) with b = 0.02
 }
 
 /// A run from particles of level 0 at spacing d, seen from the front (+z) at a distance of three times the
@@ -107,7 +107,7 @@ inline std::unique_ptr<sim::Simulation> start_from(const Run& run, sim::Scene sc
                                                    const State& start, sim::SimulationOptions options = {}) {
   options.n_star = (static_cast<std::int64_t>(start.size()) + 7) / 8;
   scene.water.front().max_m = {2 * d * static_cast<double>(options.n_star), 2 * d,
-                               2 * d};  // 8 n_* cells of d
+                               2 * d};  // 8 n_star cubes of edge d
   const Vec3d middle{mean(start, [](auto& p) { return place(p)[0]; }),
                      mean(start, [](auto& p) { return place(p)[1]; }), scene.tank_size_m[2] / 2};
   scene.view.target_m = middle;

@@ -1,4 +1,6 @@
-/// Temporal acceleration piece by piece: the choice against its probabilities, importance, inheritance.
+/// Temporal acceleration piece by piece: the random choice of the particles to solve against its
+/// probabilities, the importance from which these follow, and the velocity changes that unsolved particles
+/// inherit.
 
 #include "libsim/activation/importance.hpp"
 

@@ -1,4 +1,5 @@
-/// Shapes of obstacles in kernels: distances, normals, and shares of a kernel against brute force.
+/// Shapes of obstacles in device code: distances, normals, and the share of an SPH kernel that lies in a
+/// body, against brute force.
 
 #include "libsim/particles/solids.hpp"
 

@@ -1,4 +1,4 @@
-/// The columns that each pass reads and writes.
+/// The columns (arrays with one value for each particle) that each pass reads and writes.
 
 #include <concepts>
 #include <type_traits>

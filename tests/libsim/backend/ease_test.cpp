@@ -1,4 +1,4 @@
-/// The easing of the constraint near new particles, against brute force.
+/// The easing of the density constraint near particles that just split or merged, against brute force.
 
 #include <random>
 

@@ -10,9 +10,8 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// Target levels of particles of level 1 after the pass that applies `dead_band`: a target coarser than 1
-/// needs N (1
-/// - s) of at least 2 + dead_band. There are N = 4 levels; s is the saliency.
+/// Target levels of particles of level 1 after the pass that applies `dead_band`: they get a target coarser
+/// than 1 only if N (1 - s) is at least 2 + dead_band. There are N = 4 levels; s is the saliency.
 std::vector<std::uint8_t> graded(const std::vector<float>& saliency, float dead_band) {
   FluidState state;
   state.guards.resize(1);

@@ -1,4 +1,4 @@
-/// The range between two percentiles that normalises importance.
+/// The range between two percentiles by which temporal acceleration normalises the importance of particles.
 
 #include <algorithm>
 #include <random>

@@ -1,4 +1,4 @@
-/// Foam and effects in a bake file, and the format before them.
+/// Foam and effects in a bake file, and files of format 3, which has neither.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #pragma once
-/// A bake of water without heat that uses every feature of format 4: tau, effects, foam and pictures. It is
-/// so small and noisy that no version of zstd compresses any of it, so its bytes are the same everywhere.
+/// A bake (a recorded run) of water without heat that uses every feature of format 4: accounts with tau,
+/// effects, foam and pictures. It is so small and noisy that no version of zstd compresses any of it, so its
+/// bytes are the same everywhere.
 
 #include "tests/libsim/bake/make_bake.hpp"
 

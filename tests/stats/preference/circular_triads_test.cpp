@@ -64,8 +64,7 @@ TEST(CircularTriads, AnOrderHasNoneAndACircleTheMost) {
 
 TEST(CircularTriads, KendallsTableOfSixItems) {
   // Kendall 1962, appendix table 9: how many of the 2^15 sets of answers to all pairs of six items have d =
-  // 0, 1,
-  // ... circular triads.
+  // 0, 1, ... circular triads.
   const std::vector<double> table{720, 960, 2240, 2880, 6240, 3648, 8640, 4800, 2640};
   ASSERT_EQ(std::accumulate(table.begin(), table.end(), 0.0), 32768);
   uniformity::Draws draws(2);
@@ -121,7 +120,7 @@ TEST(GroupTriads, SumOfAllParticipants) {
   EXPECT_EQ(got->participants, 26);
   EXPECT_EQ(got->triads, triads);
   EXPECT_EQ(got->expected, 65);
-  // For a group of one participant, p is the participant's.
+  // For a group of one participant, p is that of the participant's own test.
   const auto one = stats::group_triads(std::vector(people.begin(), people.begin() + 1));
   EXPECT_NEAR(one->p, people[0].p, 1e-15);
   EXPECT_NE(stats::group_triads({}).reason(), "");

@@ -1,6 +1,6 @@
 /// Simulated pilots of the actual protocol (16 participants, 21 settings, one rating each) under several
-/// truths: coverage of the intervals of a and b, and scatter of the estimates. docs/statistics.md has the
-/// printed figures.
+/// truths: coverage of the intervals of a and b of the threshold curve a exp(b delta), and scatter of the
+/// estimates. docs/statistics.md has the printed figures.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-/// How often the test of the form rejects exponentials and finds other curves, how many files are written,
-/// and the coverage of the bands: simulated pilots of the paper's 21 settings. docs/statistics.md has the
-/// printed tables. VIP_PILOTS sets the number of pilots.
+/// How often the test of the threshold curve's form rejects exponentials and finds other curves, for how many
+/// pilots a file for the solver is written, and the coverage of its bands: simulated pilots of the paper's 21
+/// settings. docs/statistics.md has the printed tables. VIP_PILOTS sets the number of pilots.
 
 #include <gtest/gtest.h>
 

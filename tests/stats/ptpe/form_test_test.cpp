@@ -1,4 +1,5 @@
-/// Test whether mu(delta) is an exponential: the bend, its interval, and the detectable bend.
+/// The test whether the threshold mu of the mean frame rate is an exponential of the rate's deviation delta:
+/// the bend of log mu, its interval, and the smallest bend that the test detects.
 #include "stats/ptpe/form_test.hpp"
 
 #include <gmock/gmock.h>

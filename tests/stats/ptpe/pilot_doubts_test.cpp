@@ -1,4 +1,5 @@
-/// Doubts that keep a pilot from steering a solver: each has its code, and rising scores raise none.
+/// Doubts about a pilot (ratings at settings of the frame rate) for which no solver may use its fit: each has
+/// its code, and ratings that rise with the frame rate raise none.
 #include "stats/ptpe/pilot_doubts.hpp"
 
 #include <gmock/gmock.h>
@@ -33,8 +34,8 @@ Codes doubts_of(const std::vector<stats::PilotRating>& ratings, int resamples = 
   return codes;
 }
 
-/// A simulated pilot of 16 people in which `score` gives each rating its score, rounded and limited to 1
-/// to 7.
+/// A simulated pilot of 16 people in which `score` gives each rating its score, rounded and limited to 1 to
+/// 7.
 std::vector<stats::PilotRating> changed(const std::function<double(const stats::PilotRating&)>& score) {
   auto ratings = simulated::pilot({}, 16, 3);
   for (auto& rating : ratings) rating.score = std::clamp(std::round(score(rating)), 1.0, 7.0);

@@ -1,5 +1,5 @@
-/// Reverse coders, drift over the session and lapses: their detection, and the corrections by the plan's
-/// rules.
+/// Reverse coders (people who use the rating scale the wrong way round), drift of ratings over the session
+/// and lapses of attention: their detection, and the corrections by the plan's rules.
 #include "stats/ptpe/pilot_people.hpp"
 
 #include <gmock/gmock.h>

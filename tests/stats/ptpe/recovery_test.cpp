@@ -1,5 +1,6 @@
-/// Recovery of the population mean's contour by each estimate: simulated pilots over a grid of truths,
-/// including surfaces outside every estimator's family. docs/statistics.md has the printed table.
+/// How well each estimate recovers the contour (the curve of frame rates at which a population's mean score
+/// is 4): simulated pilots over a grid of truths, including populations outside every estimator's model.
+/// docs/statistics.md has the printed table.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-/// The curve whose bands go into the solver's file.
+/// The fit of the threshold curve whose confidence bands go into the solver's file: scores may level off at
+/// the ends of the rating scale.
 
 #include "stats/ptpe/scale_end_fit.hpp"
 

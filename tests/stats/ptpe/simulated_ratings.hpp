@@ -1,7 +1,7 @@
 #pragma once
 /// A pilot answered by the parametric observer's model (libstudy/observer/ptpe_observer.hpp), which stats
-/// cannot include: x = 4 + slope (mu - a exp(b delta)) + participant + noise, rounded to the nearest of 1
-/// to 7.
+/// cannot include: x = 4 + slope (mu - a exp(b delta)) + participant + noise, rounded to the nearest of 1 to
+/// 7.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-/// The intervals that the solver receives with a and b.
+/// The intervals that the solver receives with a and b of the threshold curve mu = a exp(b delta).
 
 #include "stats/ptpe/solver_interval.hpp"
 

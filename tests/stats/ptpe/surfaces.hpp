@@ -1,6 +1,6 @@
 #pragma once
-/// Simulated populations of raters, some outside every estimator's model, and the contour of their mean score
-/// by brute force.
+/// Simulated populations of raters, some outside every estimator's model. By brute force: the contour, which
+/// is the curve of frame rates at which the population's mean score is `level`.
 
 #include <algorithm>
 #include <array>
@@ -58,7 +58,7 @@ inline const Threshold saturating = [](double delta) { return 24 + 14 * (1 - std
 inline const Threshold hinged = [](double delta) { return 24 + 1.2 * std::max(0.0, delta - 10); };
 inline const Threshold linear = [](double delta) { return 24 + 0.6 * delta; };
 
-/// Surfaces outside every estimator's model, most of them about a = 23.68, b = 0.02.
+/// Populations outside every estimator's model, most of them with a threshold near 23.68 exp(0.02 delta).
 inline std::vector<Population> strange() {
   constexpr double a = 23.68, b = 0.02;
   const auto tau = [](double mu, double delta) { return mu - exponential(a, b, delta); };
