@@ -64,7 +64,8 @@ class Crashes {
   std::unordered_set<std::size_t> seen_;
 };
 
-/// Collects the units of the records "done <key> <position>" (small_study.hpp).
+/// Adds to `all` the units that records "done <key> <position>" (small_study.hpp) among the first `count`
+/// calls name.
 void take_acknowledged(const std::vector<Call>& calls, std::size_t count,
                        std::set<std::pair<std::string, int>>& all);
 

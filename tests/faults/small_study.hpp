@@ -32,7 +32,7 @@ void play(const fs::path& database, const std::vector<Person>& people, int units
 /// the database may name one that was never moved into place.
 void check_cleaned(const fs::path& database, std::vector<std::string> left, bool export_was_cut = false);
 
-/// Opens for writing and finishes what is open, as resume does.
+/// Opens the database for writing and finishes the open sessions of these people, as `vip-study resume` does.
 void resume(const fs::path& database, const std::vector<Person>& people);
 
 }  // namespace faults

@@ -130,7 +130,8 @@ void the_velocity_grid_comes_with_the_start(Backend backend) {
     fluid->step_frame();
     return static_cast<double>(fluid->report().temporal.active) / static_cast<double>(dam.finest.size());
   };
-  // Without the velocity grid all particles have the same importance, and all are solved.
+  // Without projections there is no velocity grid yet; then all particles have the same importance, and all
+  // are solved.
   EXPECT_EQ(active_share(0), 1);
   EXPECT_LT(active_share(50), 0.97);
 }

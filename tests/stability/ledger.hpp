@@ -35,7 +35,8 @@ class Ledger {
     }
   }
 
-  /// Checks and adds up the balances of the last frame.
+  /// Checks the balances of particles and mass of the last frame, and takes momentum and energy into
+  /// balance().
   void frame() {
     const auto report = fluid_.report();
     const auto state = fluid_.read_state();
@@ -49,7 +50,7 @@ class Ledger {
     momentum(state);
   }
 
-  /// Balance of the whole run; each value is a share of `gross` unless it has a unit.
+  /// Balance of the whole run; each value is a share of `gross` unless its comment says otherwise.
   struct Balance {
     double gross = 0;         ///< kg m/s: sum over frames of the forces' or the walls' impulse, the larger
     double open = 0;          ///< change of momentum that no entry of the run's account explains

@@ -31,7 +31,7 @@ TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
 }
 
 TEST(S09Jet, FallingCountsBeforeItIsMeasured) {
-  // Two frames of 0.25 s add 4.9 m/s.
+  // A fall of two frames of 0.25 s adds 4.9 m/s, which the rule must expect before it is measured.
   const sim::SubstepRule rule({.frame_dt_s = 0.25,
                                .support_m = 0.3,
                                .courant = 0.5,

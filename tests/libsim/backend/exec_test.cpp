@@ -132,7 +132,7 @@ struct SumOdd {
 };
 
 SIM_TEST(ForEachTeam, SumsAndCountsForEverySizeOfTeam) {
-  // On a device these sizes run with eight lanes, four, two and one.
+  // On a device teams have fewer lanes for larger n: eight, four, two or one for these sizes.
   for (const int n : {1, 1000, 100'003, 200'001, 700'003}) {
     Array<int> sums(static_cast<std::size_t>(n));
     Array<int> places(static_cast<std::size_t>(n));

@@ -225,8 +225,8 @@ SIM_TEST(Sticking, AFreeBodyAndTheFluidKeepTheirMomentumHoweverFewTheSteps) {
   }
 }
 
-/// One layer of thick honey at 1 m/s on a heavy box of 2 m x 1 m x 2 m: terms of 350 to 140,000 times the
-/// particle's mass, for thousands of particles, fit into the sums.
+/// One layer of thick honey at 1 m/s on a heavy box of 2 m x 1 m x 2 m. The sums over the particles at a body
+/// must have room for thousands of viscous terms of 350 to 140,000 times a particle's mass each.
 SIM_TEST(Sticking, AHeavyBodyUnderALayerOfThickHoneyComesToTheCommonSpeed) {
   NEEDS_EFFECTS;
   for (const auto& [d, viscosity] : {std::pair{0.02f, 5.0f}, {0.01f, 5.0f}, {0.01f, 500.0f}}) {
