@@ -87,7 +87,7 @@ int sync_with(const char* name, int fd) {
   const auto call = next<int (*)(int)>(name);
   if (!watched(fd)) return call(fd);
   const Turn turn;
-  if (refuse(Need::Room)) return -1;  // a delayed allocation fails here
+  if (refuse(Need::Room)) return -1;  // a file system that allocates late finds the disk full here
   const int done = call(fd);
   const struct stat found = look(fd);
   if (done == 0) record(S_ISDIR(found.st_mode) ? Done::SyncFolder : Done::Sync, found.st_ino, 0, path_of(fd));

@@ -12,7 +12,7 @@ using Fault = Step::Fault;
 
 namespace {
 
-constexpr int last_unit = 4;  // position in the plan of small_study.cpp
+constexpr int last_unit = 4;  // position of a session's last unit (small_study.cpp)
 
 CallPlan plan_of(const Step& step) {
   CallPlan plan;

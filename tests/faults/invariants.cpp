@@ -40,7 +40,7 @@ std::string stored(double number) {
   return bytes;
 }
 
-constexpr int personal_page = 1;  // position in the plan of small_study.cpp
+constexpr int personal_page = 1;  // position of a session's page with the personal question (small_study.cpp)
 
 std::string personal_answer(const std::string& key) {
   const std::size_t at = key.find('@');

@@ -32,7 +32,7 @@ struct SessionFacts {
   std::optional<bool> gaze, sharing;          ///< the last decision; none: not answered yet
   int gaze_changes = 0, sharing_changes = 0;  ///< decisions after the consent page
   int gaze_rows = 0;                          ///< rows in the tables gaze, head and gaze_validation
-  std::set<int> done;                         ///< positions of units
+  std::set<int> done;                         ///< positions of the finished units
   std::vector<std::string> answers;           ///< "position question score words"
   std::string key() const { return code + "@" + station; }
 };
@@ -48,7 +48,7 @@ struct Response {
 struct DatabaseFacts {
   bool there = false;                            ///< it is a database with the tables of a study
   std::map<std::string, SessionFacts> sessions;  ///< by Person::key()
-  std::set<std::string> withdrawn;               ///< people with tombstones, by Person::key()
+  std::set<std::string> withdrawn;  ///< people in the table of withdrawals (tombstone), by Person::key()
   std::vector<Response> responses;
   std::set<std::string> personal;  ///< answers in the file of personal data
 };

@@ -33,7 +33,7 @@ double largest_kick(const std::vector<ParticleState>& before, const std::vector<
   return largest;
 }
 
-constexpr double coarse_support = 4 * d;  // h of level 3
+constexpr double coarse_support = 4 * d;  // support radius of level 3, m
 
 /// Maxima in the 30 frames after coarse water began to split.
 struct Unrest {

@@ -14,7 +14,7 @@ constexpr double height = 0.2;   // height of the plate: four spacings of level 
 constexpr double side = 1.2;     // side of the plate
 constexpr double start_x = 1.6;  // the plate's middle, in a tank of 4.8 m
 constexpr double speed = 2;
-constexpr double given = 1;  // c, m/s
+constexpr double given = 1;  // coefficient of friction c of the scene, m/s
 constexpr double viscosity = 2;
 constexpr int frames = 36;
 

@@ -143,7 +143,7 @@ SIM_TEST(Adhesion, AWallPullsAsTheStillWaterBehindItWould) {
   for (const double q : {0.1, 0.45, 0.8}) {
     constexpr int steps = 60;
     constexpr double cell = h / steps;
-    double force = 0;  // in units of sigma V_i
+    double force = 0;  // over the tension and the particle's volume
     for (int a = 0; a < steps; ++a) {
       for (int b = -steps; b < steps; ++b) {
         for (int c = -steps; c < steps; ++c) {

@@ -88,7 +88,7 @@ TEST(FormRecoverySlow, SizePowerAndFiles) {
   }
 }
 
-using Held = std::array<bool, 5>;  // for each of surfaces::deviations
+using Held = std::array<bool, 5>;  // whether a band holds the true curve, at each of surfaces::deviations
 
 /// For one pilot: which bands hold the true curve.
 struct Bands {

@@ -145,9 +145,10 @@ TEST(PilotPeople, WithoutPositionsThereIsNoDrift) {
   EXPECT_THAT(people.drift.reason(), HasSubstr("positions"));
 }
 
+/// Shares of pilots. reversed: all reversed people were found; false_alarms: somebody else was taken for one;
+/// drift, lapses: drift or lapses were found.
 struct Found {
-  double reversed = 0, false_alarms = 0, drift = 0,
-         lapses = 0;                 ///< reversed: exactly the reversed people were found
+  double reversed = 0, false_alarms = 0, drift = 0, lapses = 0;
   double bias = 0, bias_mended = 0;  ///< bias of a, frames/s
 };
 
