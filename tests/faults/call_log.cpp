@@ -35,7 +35,8 @@ struct CallLog::Memory {
 CallLog::CallLog() {
   void* memory = ::mmap(nullptr, sizeof(Memory), PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (memory == MAP_FAILED) throw std::runtime_error("no memory for the calls");
+  if (memory == MAP_FAILED)
+    throw std::runtime_error("no shared memory for the log of calls; mend: free memory or raise ulimit -v");
   memory_ = static_cast<Memory*>(memory);
 }
 

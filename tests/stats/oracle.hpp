@@ -24,7 +24,8 @@ inline std::filesystem::path folder() {
 inline base::Json cases(const std::string& family) {
   const auto path = folder() / (family + ".json");
   std::ifstream in(path);
-  if (!in) throw std::runtime_error("cannot read " + path.string() + "; mend: unset VIP_ORACLE_DIR");
+  if (!in)
+    throw std::runtime_error("cannot read " + path.string() + "; mend: restore it, or unset VIP_ORACLE_DIR");
   return base::Json::parse(in).at("cases");
 }
 

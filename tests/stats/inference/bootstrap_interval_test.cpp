@@ -32,7 +32,9 @@ stats::Statistic statistic(const std::string& name) {
 
 std::vector<int> indices(const std::string& file) {
   std::ifstream in(oracle::folder() / file);
-  if (!in) throw std::runtime_error("cannot read the oracle's " + file + "; mend: unset VIP_ORACLE_DIR");
+  if (!in)
+    throw std::runtime_error("cannot read the oracle's " + file +
+                             "; mend: restore it, or unset VIP_ORACLE_DIR");
   std::vector<int> out;
   for (std::string line, cell; std::getline(in, line);) {
     std::istringstream cells(line);

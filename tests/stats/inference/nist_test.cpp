@@ -24,7 +24,8 @@ constexpr double eight_digits = 1e-8;
 json certified(const std::string& kind) {
   std::ifstream in(oracle::folder() / "nist" / "certified.json");
   if (!in)
-    throw std::runtime_error("cannot read nist/certified.json of the oracle; mend: unset VIP_ORACLE_DIR");
+    throw std::runtime_error(
+        "cannot read nist/certified.json of the oracle; mend: restore it, or unset VIP_ORACLE_DIR");
   return json::parse(in).at(kind);
 }
 
