@@ -10,9 +10,9 @@ namespace sim {
 
 namespace {
 
-constexpr std::string_view magic = "ViP-Lab state\n";
+constexpr std::string_view state_magic = "ViP-Lab state\n";
 constexpr std::size_t digest_size = 64;
-constexpr std::size_t head_size = magic.size() + sizeof(std::int32_t) + 2 * digest_size;
+constexpr std::size_t head_size = state_magic.size() + sizeof(std::int32_t) + 2 * digest_size;
 // Largest file: 8 n_* particles of the finest level, each of 250 bytes, with the largest n_*, 4M.
 constexpr std::size_t most_bytes = std::size_t{250} * 8 * (4u << 20);
 
@@ -88,7 +88,7 @@ std::string run_key(const Scene& scene, const SimulationOptions& o) {
 void write_state_file(const std::filesystem::path& path, std::string_view key, std::string_view body) {
   std::string bytes;
   bytes.reserve(head_size + body.size());
-  bytes.append(magic);
+  bytes.append(state_magic);
   const std::int32_t format = state_file_format;
   bytes.append(reinterpret_cast<const char*>(&format), sizeof format);
   bytes.append(key).append(base::sha256_hex(body)).append(body);
@@ -98,7 +98,7 @@ void write_state_file(const std::filesystem::path& path, std::string_view key, s
 std::string read_state_file(const std::filesystem::path& path, std::string_view key) {
   std::string bytes = base::read_file(path, most_bytes);
   const std::string_view all = bytes;
-  if (!all.starts_with(magic))
+  if (!all.starts_with(state_magic))
     fail(path, "is not a state of the solver", "give a file that --save-state wrote");
   if (all.size() < head_size) {
     fail(path,
@@ -107,13 +107,13 @@ std::string read_state_file(const std::filesystem::path& path, std::string_view 
          "save the state again");
   }
   std::int32_t format = 0;
-  std::memcpy(&format, all.data() + magic.size(), sizeof format);
+  std::memcpy(&format, all.data() + state_magic.size(), sizeof format);
   if (format != state_file_format) {
     fail(path,
          "has format " + std::to_string(format) + ", this program reads " + std::to_string(state_file_format),
          "resume with the program that saved it");
   }
-  const std::size_t key_at = magic.size() + sizeof format;
+  const std::size_t key_at = state_magic.size() + sizeof format;
   const std::string_view body = all.substr(head_size);
   if (base::sha256_hex(body) != all.substr(key_at + digest_size, digest_size))
     fail(path, "is damaged or cut short", "save the state again");

@@ -19,7 +19,7 @@ namespace stats {
 namespace {
 
 constexpr std::size_t parameters = 5;
-using Values = std::array<double, parameters>;
+using FiveValues = std::array<double, parameters>;
 
 /// Expected rating S(x): the mean of x plus a normal error, rounded to a whole score and clamped to the
 /// scale.
@@ -87,11 +87,11 @@ std::vector<Group> groups_of(std::span<const PilotObservation> observations, con
 struct CurvePlace {
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 
-  CurvePlace moved(const Values& step) const {
+  CurvePlace moved(const FiveValues& step) const {
     return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
   /// Predicted mean score of a group, and its derivatives with respect to the parameters.
-  double predict(const Group& group, const EndScale& scale, Values* slopes = nullptr) const {
+  double predict(const Group& group, const EndScale& scale, FiveValues* slopes = nullptr) const {
     const double root = 2 * std::exp((alpha + beta * group.e) / 2), u = group.root - root;
     const double x = scale.x_of_level + u * (k + m * group.e + q * u);
     if (slopes) {
@@ -119,13 +119,13 @@ double squares(const std::vector<Group>& groups, const EndScale& scale, const Cu
 
 struct Normal {
   std::array<double, parameters * parameters> matrix{};
-  Values right{};
+  FiveValues right{};
 };
 
 Normal normal_equations(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& at) {
   Normal out;
   for (const Group& group : groups) {
-    Values slopes;
+    FiveValues slopes;
     const double off = group.sum / group.n - at.predict(group, scale, &slopes);
     for (std::size_t i = 0; i < parameters; ++i) {
       out.right[i] += group.n * slopes[i] * off;

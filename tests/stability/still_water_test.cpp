@@ -93,8 +93,7 @@ void still_water_stays_calm(Backend backend, const std::vector<double>& gazes,
     }
     const Spread stirred(rms);
     std::printf("%s: %.3f m/s (%.3f)\n", sim::method_name(method).c_str(), stirred.mean, stirred.deviation);
-    // The target is 0.08. FovFluid has 0.06 on a CPU and 0.07 on a GPU with a spread of 0.013.
-    EXPECT_LT(stirred.mean, method == MethodKind::Ours ? 0.08 : 0.11) << sim::method_name(method);
+    EXPECT_LT(stirred.mean, 0.08) << sim::method_name(method);
   }
 }
 TEST(StillWater, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu, {1.2}, {MethodKind::Ours}); }
@@ -133,8 +132,12 @@ void pool_stays_still(Backend backend, MethodKind method, std::int64_t particles
                 sim::method_name(method).c_str(), static_cast<long long>(8 * particles), viscosity, substeps,
                 iterations, rms);
     // S1: 0.02 sqrt(g H). Two iterations leave water compressed, which moves a little longer: 0.067 was
-    // measured.
-    EXPECT_LT(rms, iterations > 2 ? 0.063 : 0.075)
+    // measured. FovFluid's levels change within one coarse spacing. With little viscosity and many iterations
+    // particles at rest still cross this border, and 0.12 was measured (docs/limits.md).
+    const bool stirs = method == MethodKind::FovFluid && viscosity < 0.01 && iterations > 4;
+    EXPECT_LT(rms, stirs            ? 0.15
+                   : iterations > 2 ? 0.063
+                                    : 0.075)
         << viscosity << " m2/s, " << substeps << " x " << iterations;
   }
 }
