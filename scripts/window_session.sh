@@ -133,7 +133,7 @@ kill -9 "$screen"
 status=0
 wait "$session" || status=$?
 session=
-[ $status -eq 1 ] && grep -q "the display is gone" "$out/lost_log" || { echo "FAILED  no clear error"; cat "$out/lost_log"; failed=1; }
+[ $status -eq 1 ] && grep -q "the connection to the X server is lost" "$out/lost_log" || { echo "FAILED  no clear error"; cat "$out/lost_log"; failed=1; }
 lost() { sqlite3 "$out/lost.db" "$1"; }
 answers=$(lost "select count(*) from response")
 [ "$(lost "select state from presentation order by presentation_id desc limit 1")" = interrupted ] ||

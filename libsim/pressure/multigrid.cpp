@@ -15,7 +15,7 @@ constexpr int coarsest_sweeps = 4;
 /// A grid of at most this many cells is processed by one warp.
 constexpr int one_warp_cells = 64;
 
-/// A fluid cell's position, in the scratch memory.
+/// Position of a fluid cell in its grid. Lists of positions are kept in the thread block's scratch memory.
 struct CellPlace {
   std::uint16_t x, y, z;
 };

@@ -239,7 +239,7 @@ void check_never_adjacent(const base::TomlTable& table, const Design& design) {
         table.fail_at("never_adjacent", i,
                       "cannot be satisfied: " + std::to_string(times) + " of " + std::to_string(trials) +
                           " trials have " + level,
-                      "remove this factor");
+                      "remove this factor, or remove never_adjacent and use order = \"shuffle\"");
       }
     }
   }

@@ -90,8 +90,8 @@ struct LackOfFit {
 struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are excluded, ascending
-  int far_above = 0;                 ///< number of settings excluded as far above the curve
-  int in_reach = 0;                  ///< number of nominal deltas at which the curve is within reach_margin
+  int far_above = 0;  ///< number of further settings excluded: their mu is above far_factor times the curve
+  int in_reach = 0;   ///< number of nominal deltas at which the curve is within reach_margin
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< the recommended intervals
                                                             ///< (docs/statistics.md)
   Result<PilotSpread> bootstrap = Refusal{"not computed"};

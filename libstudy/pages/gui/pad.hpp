@@ -10,7 +10,7 @@
 namespace study {
 
 /// Has digits for a question of kind Number (a typed whole number), and letters, digits and punctuation for
-/// one of kind Text. Arrow keys move a marker over the keys of the pad.
+/// one of kind Text. Arrow keys (of a hand controller's stick or the terminal) move a marker over its keys.
 class Pad {
  public:
   static constexpr const char* erase = "\u2190";

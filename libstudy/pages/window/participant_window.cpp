@@ -129,8 +129,9 @@ void ParticipantWindow::poll(double wait_s) {
   else
     glfwPollEvents();
   if (GlfwWindow::display_is_gone()) {
-    throw base::Error("the participant's window", "the display is gone; all answers given are kept",
-                      "bring it back and continue with vip-study resume");
+    throw base::Error("the participant's window",
+                      "the connection to the X server is lost; all answers given are kept",
+                      "restart the X server (the desktop) and continue with vip-study resume");
   }
   if (window_.asked_to_close()) {
     if (over_) throw Stopped();

@@ -46,8 +46,8 @@ class ParticipantWindow final : public PageSurface {
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
 
   Gui& gui() override { return gui_; }
-  /// Throws base::Error if the window was closed or the display is gone, and study::Stopped if the window was
-  /// closed after the session was over.
+  /// Throws base::Error if the window was closed or the X server is gone, and study::Stopped if the window
+  /// was closed after the session was over.
   void poll(double wait_s) override;
   std::vector<PageEvent> take_events() override;
   void forget_input() override;
