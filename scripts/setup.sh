@@ -6,7 +6,7 @@
 #   tools    programs that the tests run
 #   slow     further programs, which only the slow tests run
 #   sweeps   Snakemake, for scripts/sweep.smk and its tests
-#   lint     clang-tidy, which scripts/tidy.sh runs
+#   lint     clang-tidy and the OpenMP header it reads, for scripts/tidy.sh
 set -euo pipefail
 
 build=(
@@ -28,7 +28,7 @@ slow+=(debootstrap dpkg-dev file)     # for scripts/package.sh
 # npm installs the BIDS validator (scripts/validate_bids.sh). An npm that is already installed is used.
 command -v npm >/dev/null || slow+=(nodejs npm)
 sweeps=(snakemake)
-lint=(clang-tidy)
+lint=(clang-tidy libomp-dev)  # clang needs its own omp.h
 
 packages=()
 [ $# -gt 0 ] || set -- build tests tools slow sweeps lint

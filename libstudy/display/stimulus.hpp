@@ -74,8 +74,8 @@ enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Composi
 /// The time that is compared with a frame's scheduled time. Under grade C this is the predicted display time,
 /// if there is a prediction. Otherwise it is the submission time.
 inline std::int64_t placed_ns(const PresentTimes& times, TimingGrade grade) {
-  const bool predicted = grade == TimingGrade::Compositor && times.predicted_display_ns >= 0;
-  return predicted ? times.predicted_display_ns : times.submitted_ns;
+  if (grade == TimingGrade::Compositor && times.predicted_display_ns >= 0) return times.predicted_display_ns;
+  return times.submitted_ns;
 }
 
 class Clock;
