@@ -49,13 +49,9 @@ inline Calm calm_below(double share, double gravity, double finest_spacing) {
 /// Degree to which a particle is at rest for the rules of levels: 1 up to 1.06 times the limit speed
 /// Readings::calm_speed x sqrt(g d_*), falling to 0 at 1.5 times it.
 struct LevelRest {
-  Calm calm;
+  static constexpr double fades_at = 1.5;  ///< speed from which the degree is 0, in limit speeds
+  Calm calm;                               ///< with fades_at times the limit speed
   SIM_FN float operator()(Vec4 v) const { return at_most(2 * calm(v.x, v.y, v.z), 1.0f); }
 };
-
-/// calm_speed: Readings::calm_speed; gravity in m/s2; finest spacing d_* in m.
-inline LevelRest level_rest(double calm_speed, double gravity, double finest_spacing) {
-  return {calm_below(1.5 * calm_speed, gravity, finest_spacing)};
-}
 
 }  // namespace sim::SIM_BACKEND

@@ -140,14 +140,15 @@ void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   state.gradients.run(p.gradient, fields, fluid.neighbours, fluid.n, fluid.finest_support);
   if (fluid.unrest) {
     for_each("saliency unrest", fluid.n,
-             FollowUnrest{.now = state.temporal.data(),
-                          .unrest = fluid.unrest,
-                          .velocity = fluid.velocity,
-                          .swirl = fluid.swirl,
-                          .rest = level_rest(p.calm_speed, static_cast<double>(fluid.gravity),
-                                             static_cast<double>(fluid.finest_support) / 2),
-                          .share = in_one_step(p.temporal_follow, state.frames_since),
-                          .floor = static_cast<float>(p.calm_floor)});
+             FollowUnrest{
+                 .now = state.temporal.data(),
+                 .unrest = fluid.unrest,
+                 .velocity = fluid.velocity,
+                 .swirl = fluid.swirl,
+                 .rest = {calm_below(LevelRest::fades_at * p.calm_speed, static_cast<double>(fluid.gravity),
+                                     static_cast<double>(fluid.finest_support) / 2)},
+                 .share = in_one_step(p.temporal_follow, state.frames_since),
+                 .floor = static_cast<float>(p.calm_floor)});
   }
 }
 

@@ -57,7 +57,7 @@ void Console::begin(const OpenSession& session) {
   verdicts_.clear();
   say(fmt::format("{}: {} steps of {} left, {}; disk {:.1f} GB free", session.plan.participant,
                   session.units.size(), session.planned, left(), 1e-3 * free_mb(database_)));
-  // Does not say which hypotheses: a plan file lists them, which vip-stats reads and a session does not.
+  // Names no hypothesis: a plan file lists them. vip-stats reads that file, a session does not.
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
            ? "; hypotheses that need tracked gaze are not testable"

@@ -278,10 +278,10 @@ struct FluidState {
   Guards* guard() { return guards.data(); }
   /// Recorder of troubled particles for a pass in the first (0) or second (1) half of the present substep.
   Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
-  LevelRest level_rest() const {
-    return sim::SIM_BACKEND::level_rest(saliency.readings.calm_speed,
-                                        static_cast<double>(parameters.gravity.strength),
-                                        static_cast<double>(finest_support) / 2);
+  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
+  Calm calm(double share) const {
+    return calm_below(share * saliency.readings.calm_speed, static_cast<double>(parameters.gravity.strength),
+                      static_cast<double>(finest_support) / 2);
   }
   Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };

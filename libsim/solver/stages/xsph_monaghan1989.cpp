@@ -165,9 +165,7 @@ using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column
 
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
-  const Calm calm =
-      calm_below(state.saliency.readings.calm_speed, static_cast<double>(state.parameters.gravity.strength),
-                 static_cast<double>(state.finest_support) / 2);
+  const Calm calm = state.calm(1);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
                              .ease = p.ease(),
