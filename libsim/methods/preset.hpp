@@ -111,9 +111,9 @@ struct Readings {
   /// least this number. So a particle whose s varies about the border of two levels does not alternately
   /// split and merge. [0, 1)
   double merge_dead_band = 0.7;
-  /// Added to merge_dead_band for particles at rest: in full up to about the limit speed of calm_speed,
-  /// falling to 0 at 1.5 times it. Each merge stirs still water a little, and stirred water splits and merges
-  /// again (docs/decisions.md, "Still water with levels"). >= 0
+  /// Added to merge_dead_band for particles at rest of level 1 or coarser: in full up to about the limit
+  /// speed of calm_speed, falling to 0 at 1.5 times it. Each merge stirs still water a little, and stirred
+  /// water splits and merges again (docs/decisions.md, "Still water with levels"). >= 0
   double calm_dead_band = 0.7;
   /// Strength of a filter of velocity changes near particles that just split or merged. In a substep the
   /// filter removes up to this share of the differences between neighbours' velocity changes, and most in

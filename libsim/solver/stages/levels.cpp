@@ -118,8 +118,8 @@ Stage opening_targets_stage() {
 namespace {
 
 /// Hysteresis: a particle of level l with a coarser target keeps l as target, unless N (1 - s) is at least
-/// l + 1 + dead_band, with s the saliency and N the number of levels. For a particle at rest calm_dead_band
-/// is added to the dead band.
+/// l + 1 + dead_band, with s the saliency and N the number of levels. For a particle at rest of level 1 or
+/// coarser, calm_dead_band is added to the dead band.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;
@@ -129,7 +129,8 @@ struct Hold {
   float levels, dead_band, calm_dead_band;
   SIM_FN void operator()(int i) const {
     if (target[i] <= level[i]) return;
-    const float border = static_cast<float>(level[i] + 1) + dead_band + calm_dead_band * rest(velocity[i]);
+    const float wider = level[i] > 0 ? calm_dead_band * rest(velocity[i]) : 0;
+    const float border = static_cast<float>(level[i] + 1) + dead_band + wider;
     if (levels * (1 - saliency[i]) < border) target[i] = level[i];
   }
 };
