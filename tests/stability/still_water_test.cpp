@@ -133,9 +133,9 @@ void pool_stays_still(Backend backend, MethodKind method, std::int64_t particles
                 iterations, rms);
     // S1: 0.02 sqrt(g H). Two iterations leave water compressed, which moves a little longer: 0.067 was
     // measured. FovFluid's levels change within one coarse spacing. With little viscosity and many iterations
-    // particles at rest still cross this border, and 0.12 was measured (docs/limits.md).
+    // particles at rest still cross this border, and 0.093 was measured (docs/limits.md).
     const bool stirs = method == MethodKind::FovFluid && viscosity < 0.01 && iterations > 4;
-    EXPECT_LT(rms, stirs            ? 0.15
+    EXPECT_LT(rms, stirs            ? 0.12
                    : iterations > 2 ? 0.063
                                     : 0.075)
         << viscosity << " m2/s, " << substeps << " x " << iterations;
@@ -154,7 +154,8 @@ TEST(StillWater, OfOneLevelStaysStill) {
 }
 TEST(StillWaterSlow, OfOneLevelStaysStill) {
   pool_stays_still(Backend::Cpu, MethodKind::HiRes, n_star, all_steps({0, 0.001, 0.01}));
-  pool_stays_still(Backend::Cpu, MethodKind::HiRes, 4 * n_star, {{0, 2, 4}, {0, 8, 4}});
+  // 4 n_star leaves an incomplete layer at the top, whose particles do not come to rest (docs/limits.md).
+  pool_stays_still(Backend::Cpu, MethodKind::HiRes, 8 * n_star, {{0, 2, 4}, {0, 8, 4}});
 }
 TEST(StillWaterGpu, OfOneLevelStaysStill) {
   pool_stays_still(Backend::Cuda, MethodKind::HiRes, n_star, all_steps({0, 0.001, 0.01}));
