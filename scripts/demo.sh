@@ -45,12 +45,12 @@ phase "Bake SingleDam: particles and pictures"
 run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 60 \
   --pictures 640x360 --out $out/dam.bake
 
-phase "Play the 21 settings in real time, 1.2 s each, every frame rendered"
+phase "Play the 21 settings in real time, 1 s each, every frame rendered"
 # This copy of the protocol shows black for 0.25 s before each trial, not 3 s, since a simulated observer
 # needs no rest.
 run sed -n 's/"black 3"\(.*]\).*/"black 0.25"\1/; w '$out/short_pauses.toml protocols/ptpe_pilot.toml
 run $bin/vip-study run $out/short_pauses.toml --db $out/pacing.db --participants 1 --observer $observer \
-  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1.2
+  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1
 
 phase "Run 16 simulated participants through the whole pilot on the virtual clock"
 run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/study.db --participants 16 --observer $observer \
