@@ -12,6 +12,7 @@ struct PlayOptions;
 void add_check_command(CLI::App& app);
 void add_reference_command(CLI::App& app);
 void add_trace_command(CLI::App& app);
+void add_certify_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_resume_command(CLI::App& app);

@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   apps::add_headset_command(*app);
   apps::add_reference_command(*app);
   apps::add_trace_command(*app);
+  apps::add_certify_command(*app);
   apps::add_bake_command(*app);
   apps::add_run_command(*app);
   apps::add_resume_command(*app);

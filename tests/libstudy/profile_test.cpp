@@ -182,6 +182,12 @@ TEST(Capture, ReadsColumnsOfPresentMonAndOneColumnOfNumbers) {
   EXPECT_THAT(captured("10\n20\n30\n40\n", "", 0.03).frame_ms, ElementsAre(10, 20));
 }
 
+TEST(Capture, ReadsOcatWhoseFirstRowDescribesTheComputer) {
+  const std::string ocat = "MsBetweenPresents,Motherboard,OS\n10,\"A, B\",x\n20\n";
+  EXPECT_THAT(captured(ocat).frame_ms, testing::ElementsAre(10, 20));
+  EXPECT_THROW(captured(ocat + "30,x\n"), base::Error);
+}
+
 TEST(Capture, ItsLineIsTheTimingOfALevel) {
   const FrameCapture capture = captured("10\n20\n30\n");
   const auto root = base::parse_toml(timing_line(capture), "level.toml");

@@ -1,0 +1,41 @@
+#pragma once
+/// Frame times from the logs of other programs, for a timing certificate of what they showed.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace study {
+
+/// The frame times of one window (swap chain) of one program, from one column of a log.
+struct FrameLog {
+  std::string source;  ///< program, process and swap chain in words; empty: the log names none
+  std::string column;  ///< name of the column that was read; empty: the file has no names
+  /// true: intervals between changes of the picture, as the display system reported them; false: intervals
+  /// between frames of the program
+  bool displayed = false;
+  std::vector<double> frame_ms;  ///< in their order; at least two
+  /// Rows without a frame time: frames that were never shown, and the first frame if none precedes it.
+  std::int64_t left_out = 0;
+  std::optional<double> animation_error_ms;  ///< mean |animation error|; none: not in the log
+};
+
+/// Reads a CSV file of PresentMon 1 or 2, OCAT, FrameView, CapFrameX, FRAPS (frametimes), MangoHud or
+/// Unreal's CSV profiler, a table with a column of frame times in ms, or one column of numbers without a
+/// name.
+///
+/// column: the name of the column to read. If it is empty: the intervals between frames (MsBetweenPresents,
+/// FrameTime, or the differences of "Time (ms)") and between changes of the picture (MsBetweenDisplayChange
+/// or DisplayedTime), as far as the file has them. The result has one element for each window and column, in
+/// the order of their first rows; a column without frame times of a window is left out.
+///
+/// MangoHud's older logs hold microseconds, which the column of frame rates shows.
+///
+/// base::Error at file:line for a file that is no such table, and for a frame time outside shortest_trace_ms
+/// to longest_trace_ms. base::Error at the file for a log that holds samples or mean rates instead of each
+/// frame, and for a window with fewer than two frame times.
+std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column);
+
+}  // namespace study
