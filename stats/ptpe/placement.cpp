@@ -3,6 +3,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,6 +12,12 @@ namespace {
 
 constexpr int grid_points = 13;
 constexpr double largest_b = 0.1;  // s/frame
+
+/// Trials at the ends: whether a trial uses the smallest standard deviation. The contour there is a, and b is
+/// its slope, so that trials at the smallest one determine both.
+constexpr std::array at_smallest{true, true, false, true};
+/// Distances of successive trials from the estimated contour, as exponents of PlacementRules::bracket.
+constexpr std::array end_distances{1, 0, -1}, inner_distances{0, 1, -1};
 
 struct PlacementPoint {
   double a = 0, b = 0, slope = 0;
@@ -98,12 +105,16 @@ Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrio
 
 int Placement::next() const {
   const std::size_t trial = shown_.size();
-  const bool inner = deltas_.size() > 2 && trial < static_cast<std::size_t>(rules_.between);
-  const double end = trial % 2 == 0 ? deltas_.front() : deltas_.back();
-  const double delta = inner ? inner_delta(deltas_, trial) : end;
-  const bool above = inner ? trial % 2 == 0 : trial / 2 % 2 == 0;
+  const std::size_t between = deltas_.size() > 2 ? static_cast<std::size_t>(rules_.between) : 0;
+  const bool inner = trial < between;
+  const std::size_t turn = inner ? trial : trial - between;
+  const double delta = inner                                    ? inner_delta(deltas_, trial)
+                       : at_smallest[turn % at_smallest.size()] ? deltas_.front()
+                                                                : deltas_.back();
+  // The two cycles have no common divisor, so that both ends meet all distances from the contour.
+  const int distance = (inner ? inner_distances : end_distances)[turn % end_distances.size()];
   const double contour = a().mean * std::exp(b().mean * delta);
-  const double wanted = contour * (above ? rules_.bracket : 1 / rules_.bracket);
+  const double wanted = contour * std::pow(rules_.bracket, distance);
   // Finds the setting nearest to `wanted`. A setting of another standard deviation (delta) is taken only if
   // none of this one may be shown again.
   constexpr double other_delta = 1e3;
@@ -112,10 +123,10 @@ int Placement::next() const {
   for (int i = 0; i < static_cast<int>(settings_.size()); ++i) {
     const PlacementSetting& one = settings_[static_cast<std::size_t>(i)];
     if (std::ranges::count(shown_, i) >= rules_.most_of_one) continue;
-    const double distance = std::abs(std::log(one.mu / wanted)) + other_delta * std::abs(one.delta - delta);
-    if (best < 0 || distance < least) {
+    const double far = std::abs(std::log(one.mu / wanted)) + other_delta * std::abs(one.delta - delta);
+    if (best < 0 || far < least) {
       best = i;
-      least = distance;
+      least = far;
     }
   }
   if (best < 0)

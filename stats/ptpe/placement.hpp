@@ -3,10 +3,11 @@
 /// chosen near the contour of just satisfactory settings that the ratings so far suggest.
 ///
 /// A rating says equally much about the contour wherever it lies on the scale, except near the scale's ends.
-/// So the settings of one person bracket the present estimate of the contour, above and below it in turn, at
-/// the smallest and the largest standard deviation in turn. There a and b are determined best (the D-optimal
-/// design of a line). Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at
-/// random (docs/decisions.md).
+/// So the settings of one person lie above, on and below the present estimate of the contour in turn. Those
+/// on it determine the contour whatever the curvature of the ratings about it, the others their slope. Three
+/// of four trials use the smallest standard deviation, the fourth the largest: there a and b are determined
+/// best. Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at random
+/// (docs/decisions.md).
 
 #include <cstddef>
 #include <span>
@@ -48,8 +49,9 @@ struct PlacementRules {
   /// Without such trials the form of the contour, the just satisfactory mean frame rate over the standard
   /// deviation, cannot be checked, and estimate_direct() has no fit.
   int between = 3;
-  /// Ratio, above 1, of a wanted mean frame rate to the estimated contour, or of the contour to that mean.
-  double bracket = 1.35;
+  /// Ratio, above 1, of a mean frame rate that is wanted above the estimated contour to the contour, and of
+  /// the contour to one that is wanted below it.
+  double bracket = 1.5;
   int most_of_one = 1000000;  ///< largest number of times that a setting is shown in a session
 };
 

@@ -122,6 +122,15 @@ TEST(AdaptiveTrack, AResumedSessionContinuesExactly) {
   }
 }
 
+TEST(AdaptiveTrack, PlacementBeginsBetweenTheEndsUnlessTheProtocolSaysOtherwise) {
+  const auto fixed = [](const std::string& text) {
+    return parse_protocol(text, "study.toml").design.procedure->fixed;
+  };
+  EXPECT_EQ(fixed(changed(placement_text(), "fixed = 2\n", "")), 3);
+  EXPECT_EQ(fixed(changed(placement_text(), "fixed = 2\n", "fixed = 0\n")), 0);
+  EXPECT_EQ(fixed(changed(changed(placement_text(), "fixed = 2\n", ""), "trials = 10", "trials = 2")), 2);
+}
+
 TEST(AdaptiveTrack, FixedTrialsComeFirstAndNoLevelTooOften) {
   const auto cells = play(read(placement_text()), "ptpe:a=25,b=0.02", never);
   for (const int trial : {0, 1}) EXPECT_EQ(cells[static_cast<std::size_t>(trial)].first % 3, 1) << "SD 4";

@@ -28,6 +28,7 @@ const std::vector<PlacementSetting> pilot = settings(10, 50), fine = settings(2.
 
 TEST(Placement, BracketsTheContourOfARaterWithoutNoise) {
   Placement placement(fine, placement_prior(fine));
+  int smallest = 0, on = 0;
   for (int trial = 0; trial < 30; ++trial) {
     const int index = placement.next();
     const PlacementSetting& one = fine[static_cast<std::size_t>(index)];
@@ -37,10 +38,17 @@ TEST(Placement, BracketsTheContourOfARaterWithoutNoise) {
     }
     if (trial > 12) {
       EXPECT_TRUE(one.delta == 0 || one.delta == 20) << trial;
-      EXPECT_NEAR(std::abs(std::log(one.mu / contour)), std::log(1.35), 0.2) << trial;
+      const double distance =
+          (one.mu > contour ? 1 : -1) * std::abs(std::log(one.mu / contour)) / std::log(1.5);
+      EXPECT_NEAR(distance, std::round(distance), 0.45) << trial;
+      EXPECT_LE(std::abs(std::round(distance)), 1) << trial;
+      smallest += one.delta == 0;
+      on += std::round(distance) == 0;
     }
     placement.add(index, std::clamp(static_cast<int>(std::lround(4 + 0.14 * (one.mu - contour))), 1, 7));
   }
+  EXPECT_NEAR(smallest, 0.75 * 17, 1);
+  EXPECT_NEAR(on, 17 / 3.0, 1);
   EXPECT_NEAR(placement.a().mean, 24, 2.5);
   EXPECT_NEAR(placement.b().mean, 0.02, 0.005);
 }
@@ -61,7 +69,7 @@ TEST(Placement, RefusesWhatItCannotUse) {
   EXPECT_THROW(placement.add(0, 8), std::invalid_argument);
 }
 
-TEST(Placement, TwoThirdsOfTheTrialsGiveTheSameWidthOfB) {
+TEST(Placement, TwoThirdsOfTheTrialsGiveTheSameWidths) {
   PlacementStudy study;
   study.adaptive = false;
   const PlacementSummary all = simulate_placement(study, pilot, fine, 30, 1);
@@ -69,8 +77,8 @@ TEST(Placement, TwoThirdsOfTheTrialsGiveTheSameWidthOfB) {
   study.trials = 14;
   const PlacementSummary placed = simulate_placement(study, pilot, fine, 30, 1);
   EXPECT_EQ(placed.fitted, 30);
-  EXPECT_LT(placed.b_width, 1.15 * all.b_width);
-  EXPECT_LT(placed.a_width, 1.35 * all.a_width);
+  EXPECT_LT(placed.b_width, 1.1 * all.b_width);
+  EXPECT_LT(placed.a_width, 1.15 * all.a_width);
   EXPECT_GE(placed.a_covered, 0.8);
 }
 
@@ -84,7 +92,7 @@ TEST(PlacementSlow, WidthsBesideFixedSettings) {
         PlacementStudy study{.a = a, .b = b, .truth = truth, .adaptive = false};
         const PlacementSummary all = simulate_placement(study, pilot, fine, 200, 1);
         study.adaptive = true;
-        for (const int trials : {7, 10, 14, 21}) {
+        for (const int trials : {7, 10, 12, 14, 21}) {
           study.trials = trials;
           const PlacementSummary placed = simulate_placement(study, pilot, fine, 200, 1);
           std::printf(
@@ -96,7 +104,7 @@ TEST(PlacementSlow, WidthsBesideFixedSettings) {
               placed.form_rejected, all.form_rejected);
           if (truth != PlacementTruth::Model || trials != 14) continue;
           ++truths;
-          same_width += placed.b_width <= 1.05 * all.b_width;
+          same_width += placed.a_width <= 1.05 * all.a_width && placed.b_width <= 1.05 * all.b_width;
           EXPECT_GT(placed.b_covered, 0.87);
           EXPECT_GT(placed.a_covered, 0.87);
         }
