@@ -40,7 +40,7 @@ study::PlayedTrial trial_of(const study::FrameLog& log) {
     study::FrameRecord frame;
     frame.index = static_cast<std::int64_t>(played.frames.size());
     frame.scheduled_ns = frame.times.submitted_ns = played.end_ns;
-    if (log.displayed) frame.times.actual_display_ns = played.end_ns;
+    if (log.kind == study::Intervals::DisplayChanges) frame.times.actual_display_ns = played.end_ns;
     played.frames.push_back(frame);
     now_ms += ms;
     played.end_ns = std::llround(1e6 * now_ms);
@@ -50,7 +50,8 @@ study::PlayedTrial trial_of(const study::FrameLog& log) {
 
 study::TimingVerdict verdict_of(const study::FrameLog& log, const std::optional<study::FpsSetting>& nominal,
                                 study::FpsMean mean) {
-  const auto grade = log.displayed ? study::TimingGrade::DisplayFeedback : study::TimingGrade::CpuSubmit;
+  const auto grade = log.kind == study::Intervals::DisplayChanges ? study::TimingGrade::DisplayFeedback
+                                                                  : study::TimingGrade::CpuSubmit;
   study::PacingRules rules;
   rules.mean = mean;
   const study::PlayedTrial played = trial_of(log);
@@ -75,7 +76,7 @@ study::CertificateRow row_of(const study::FrameLog& log, const std::string& name
     row.degraded = verdict.verdict == study::Verdict::Degraded;
     row.fail = verdict.verdict == study::Verdict::Fail;
   }
-  row.grades = std::string(1, static_cast<char>(verdict.grade));
+  row.grades = log.kind == study::Intervals::Named ? "-" : std::string(1, static_cast<char>(verdict.grade));
   row.levels = {{"log", name},
                 {"program", log.source.empty() ? "-" : log.source},
                 {"column", log.column.empty() ? "-" : base::shortened(log.column)}};
@@ -87,19 +88,34 @@ study::CertificateRow row_of(const study::FrameLog& log, const std::string& name
   return row;
 }
 
+const char* meaning_of(study::Intervals kind) {
+  switch (kind) {
+    case study::Intervals::Frames:
+      return "intervals between frames of the program, which say nothing of when the display showed them";
+    case study::Intervals::DisplayChanges:
+      return "intervals between changes of the picture, as the display system reported them";
+    case study::Intervals::Named:
+      break;
+  }
+  return "taken for frame times, as --column asks";
+}
+
 /// What the table of the certificate has no column for.
 std::string note_of(const study::FrameLog& log, const study::CertificateRow& row,
                     const study::TimingVerdict& verdict) {
   double time_ms = 0;
   for (const double ms : log.frame_ms) time_ms += ms;
-  std::string note = fmt::format(
-      "{}, {}, {}: {} frames in {:.6f} s, 95 % of the intervals up to {:.3f} ms; {}", row.levels[0].second,
-      row.levels[1].second, row.levels[2].second, row.frames, 1e-3 * time_ms, verdict.p95_ms,
-      log.displayed ? "changes of the picture, as the display system reported them"
-                    : "frames of the program, which say nothing of when the display showed them");
+  std::string note =
+      fmt::format("{}, {}, {}: {} frames in {:.6f} s, 95 % of the intervals up to {:.3f} ms; {}",
+                  row.levels[0].second, row.levels[1].second, row.levels[2].second, row.frames,
+                  1e-3 * time_ms, verdict.p95_ms, meaning_of(log.kind));
   if (log.left_out > 0)
     note += fmt::format("; rows without an interval: {} ({})", log.left_out,
-                        log.displayed ? "frames that were never shown" : "the first frame");
+                        log.kind == study::Intervals::DisplayChanges
+                            ? "frames that were never shown, or the first of the log"
+                            : "the first of the log");
+  if (log.animation_error_ms) note += fmt::format("; animation error of {} rows", log.animation_rows);
+  for (const std::string& remark : log.remarks) note += "; " + remark;
   if (!verdict.reason.empty()) note += "; " + verdict.reason;
   return note + '\n';
 }
@@ -111,7 +127,8 @@ void certify(const CertifyOptions& options) {
   std::vector<study::CertificateRow> rows;
   std::string notes;
   for (const std::string& file : options.files) {
-    const std::string name = base::shortened(std::filesystem::path(file).filename().string());
+    const std::string name =
+        base::shortened(options.files.size() > 1 ? file : std::filesystem::path(file).filename().string());
     for (const study::FrameLog& log : study::read_frame_logs(file, options.column)) {
       const study::TimingVerdict verdict = verdict_of(log, nominal, mean);
       rows.push_back(row_of(log, name, verdict, nominal, mean));
@@ -119,8 +136,13 @@ void certify(const CertifyOptions& options) {
     }
   }
   std::string text = study::format_certificate(rows, mean, false);
-  // Without a setting that was asked for, nothing passes or fails.
-  if (!nominal) text.erase(text.rfind('\n', text.size() - 2) + 1);
+  // The last line counts trials, and a line of this table is a column of a log.
+  text.erase(text.rfind('\n', text.size() - 2) + 1);
+  if (nominal) {
+    std::size_t passed = 0;
+    for (const study::CertificateRow& row : rows) passed += row.pass > 0;
+    text += fmt::format("{} of {} lines pass\n", passed, rows.size());
+  }
   text += "A log has no schedule, so no frame of it counts as late.\n";
   std::fputs((text + notes).c_str(), stdout);
 }
@@ -132,11 +154,13 @@ void add_certify_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand(
       "certify", "Print the timing certificate of frame logs of other programs, such as PresentMon");
   sub.add_option("files", options->files, "CSV files, in a format of docs/session.md")->required();
-  sub.add_option("--column", options->column,
-                 "Column of frame times in ms; without: those between frames and those on the display");
+  sub.add_option(
+      "--column", options->column,
+      "Column of frame times in ms (default: intervals between frames, and between changes of the picture)");
   auto* asked = sub.add_option("--mean", options->mean, "Mean frame rate that was asked for, frames/s")
                     ->check(number_in(0.1, 10000));
-  sub.add_option("--sd", options->sd, "Standard deviation of the frame rate that was asked for, frames/s")
+  sub.add_option("--sd", options->sd,
+                 "Standard deviation of the frame rate that was asked for, frames/s (default 0)")
       ->check(number_in(0, 10000))
       ->needs(asked);
   sub.add_flag("--arithmetic", options->arithmetic,

@@ -40,8 +40,14 @@ std::vector<std::string> fields_of(const std::string& line, char separator) {
 }
 
 char separator_of(const std::string& line) {
+  std::string outside;  // what no quotes enclose
+  bool quoted = false;
+  for (const char c : line) {
+    quoted ^= c == '"';
+    if (!quoted) outside += c;
+  }
   for (const char c : {'\t', ';'})
-    if (line.find(c) != std::string::npos) return c;
+    if (outside.find(c) != std::string::npos) return c;
   return ',';
 }
 
@@ -53,9 +59,11 @@ CaptureTable::CaptureTable(const std::filesystem::path& file)
   bool more = next_line(line);
   while (more && (line.starts_with("//") || line.starts_with("#"))) more = next_line(line);
   // MangoHud writes its version and describes the computer before it names the columns.
-  const bool mangohud = more && (line == "v1" || line.starts_with("os,cpu,gpu"));
-  while (mangohud && more && !line.starts_with("fps,frametime")) more = next_line(line);
-  if (!more) fail("is empty, or has only comment lines");
+  mangohud_ = more && (line == "v1" || line.starts_with("os,cpu,gpu"));
+  while (mangohud_ && more && !line.starts_with("fps,frametime")) more = next_line(line);
+  if (!more)
+    fail(mangohud_ ? "has no line of MangoHud that begins with fps,frametime"
+                   : "is empty, or has only comment lines");
   separator_ = separator_of(line);
   names_ = fields_of(line, separator_);
   for (const std::string& name : names_)
@@ -75,7 +83,10 @@ bool CaptureTable::next(std::vector<std::string>& fields) {
     if (!next_line(line)) return false;
     fields = fields_of(line, separator_);
     // Unreal repeats the names in the last line but one. The last line describes the build.
-    if (named_ && fields == names_) return false;
+    if (named_ && fields == names_) {
+      if (folded_name(names_.front()) == "events") return false;
+      fail("names the columns again", "give each recording in a file of its own");
+    }
   } else {
     fields = std::exchange(first_row_, {});
   }

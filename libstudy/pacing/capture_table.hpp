@@ -21,6 +21,7 @@ class CaptureTable {
   /// The names of the columns. A file with one column of numbers and no name has one empty name.
   const std::vector<std::string>& names() const { return names_; }
   bool named() const { return named_; }
+  bool mangohud() const { return mangohud_; }  ///< true: MangoHud's description of the computer came first
   const std::string& file() const { return file_; }
 
   /// Sets `fields` to the next row, with one field for each name; false at the end.
@@ -53,7 +54,7 @@ class CaptureTable {
   int number_ = 0;  ///< number of the last line read, from 1
   char separator_ = ',';
   std::vector<std::string> names_, first_row_;  ///< first_row_: a row that was read where names were expected
-  bool named_ = false, first_ = true;
+  bool named_ = false, first_ = true, mangohud_ = false;
   std::size_t later_fields_ = 0;  ///< number of fields of the rows after the first
 };
 

@@ -9,17 +9,21 @@
 
 namespace study {
 
+/// What the intervals of a log lie between. Named: a column that the user named, whose meaning is not known.
+enum class Intervals { Frames, DisplayChanges, Named };
+
 /// The frame times of one window (swap chain) of one program, from one column of a log.
 struct FrameLog {
   std::string source;  ///< program, process and swap chain in words; empty: the log names none
   std::string column;  ///< name of the column that was read; empty: the file has no names
-  /// true: intervals between changes of the picture, as the display system reported them; false: intervals
-  /// between frames of the program
-  bool displayed = false;
+  Intervals kind = Intervals::Frames;
   std::vector<double> frame_ms;  ///< in their order; at least two
   /// Rows without a frame time: frames that were never shown, and the first frame if none precedes it.
   std::int64_t left_out = 0;
   std::optional<double> animation_error_ms;  ///< mean |animation error|; none: not in the log
+  std::int64_t animation_rows = 0;           ///< number of rows in that mean
+  /// What the log does not determine, such as a window that has too few frames; empty: nothing.
+  std::vector<std::string> remarks;
 };
 
 /// Reads a CSV file of PresentMon 1 or 2, OCAT, FrameView, CapFrameX, FRAPS (frametimes), MangoHud or
@@ -31,11 +35,12 @@ struct FrameLog {
 /// or DisplayedTime), as far as the file has them. The result has one element for each window and column, in
 /// the order of their first rows; a column without frame times of a window is left out.
 ///
-/// MangoHud's older logs hold microseconds, which the column of frame rates shows.
+/// MangoHud's older logs hold microseconds, which the column of frame rates shows. Windows with fewer than
+/// two frame times are left out, with a remark.
 ///
 /// base::Error at file:line for a file that is no such table, and for a frame time outside shortest_trace_ms
 /// to longest_trace_ms. base::Error at the file for a log that holds samples or mean rates instead of each
-/// frame, and for a window with fewer than two frame times.
+/// frame, for display changes that count frames which were never shown, and if no window has two frame times.
 std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column);
 
 }  // namespace study
