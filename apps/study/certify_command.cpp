@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +18,6 @@
 #include "libstudy/pacing/frame_log.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/store/read/status.hpp"
-#include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -100,11 +99,11 @@ const char* meaning_of(study::Intervals kind) {
   return "taken for frame times, as --column asks";
 }
 
-/// What the table of the certificate has no column for.
+/// One line about a log, with what the table has no column for: number of frames, duration, 95th percentile,
+/// meaning of the intervals, rows without one, remarks.
 std::string note_of(const study::FrameLog& log, const study::CertificateRow& row,
                     const study::TimingVerdict& verdict) {
-  double time_ms = 0;
-  for (const double ms : log.frame_ms) time_ms += ms;
+  const double time_ms = std::accumulate(log.frame_ms.begin(), log.frame_ms.end(), 0.0);
   std::string note =
       fmt::format("{}, {}, {}: {} frames in {:.6f} s, 95 % of the intervals up to {:.3f} ms; {}",
                   row.levels[0].second, row.levels[1].second, row.levels[2].second, row.frames,
@@ -135,9 +134,7 @@ void certify(const CertifyOptions& options) {
       notes += note_of(log, rows.back(), verdict);
     }
   }
-  std::string text = study::format_certificate(rows, mean, false);
-  // The last line counts trials, and a line of this table is a column of a log.
-  text.erase(text.rfind('\n', text.size() - 2) + 1);
+  std::string text = study::certificate_table(rows, mean, false);
   if (nominal) {
     std::size_t passed = 0;
     for (const study::CertificateRow& row : rows) passed += row.pass > 0;

@@ -113,7 +113,7 @@ std::string marked(const std::string& line, const char* word, const char* colour
 
 }  // namespace
 
-std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
+std::string certificate_table(const Rows& rows, FpsMean mean, bool coloured) {
   if (rows.empty()) return "";
   const Shown shown = shown_in(rows);
   const bool profiles = !rows.front().levels.empty();
@@ -123,7 +123,6 @@ std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
                      (profiles ? profile_meaning : "") + shown.head +
                      "    mu  delta  trials  mu real   worst   d real   worst" +
                      (profiles ? profile_head : "") + "    late worst ms  pass  degraded  fail grade\n";
-  std::int64_t pass = 0, fail = 0, all = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& row = rows[i];
     const std::string line = shown.lines[i] + format_row(row);
@@ -134,6 +133,15 @@ std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
     else
       text += line;
     text += '\n';
+  }
+  return text;
+}
+
+std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
+  const std::string text = certificate_table(rows, mean, coloured);
+  if (rows.empty()) return text;
+  std::int64_t pass = 0, fail = 0, all = 0;
+  for (const CertificateRow& row : rows) {
     pass += row.pass;
     fail += row.fail;
     all += row.trials;

@@ -22,4 +22,7 @@ namespace study {
 /// difference between a frame's step of simulated time and its interval).
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
+/// The same without the last line, for rows that are not trials.
+std::string certificate_table(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
+
 }  // namespace study

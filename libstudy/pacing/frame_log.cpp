@@ -12,7 +12,6 @@
 #include "libstudy/pacing/capture_table.hpp"
 #include "libstudy/pacing/profile.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 
 namespace study {
@@ -22,7 +21,7 @@ namespace {
 constexpr std::array frame_columns{"MsBetweenPresents", "FrameTime", "Time (ms)", "Time(ms)"};
 constexpr std::array display_columns{"MsBetweenDisplayChange", "DisplayedTime"};
 constexpr std::array animation_columns{"AnimationError", "MsAnimationError"};
-/// Columns with the time of a row since the start, and their units in ms.
+/// Columns that hold the time since the start of the log, and the length of their unit in ms.
 constexpr std::array<std::pair<const char*, double>, 2> clock_columns{
     {{"TimeInSeconds", 1e3}, {"elapsed", 1e-6}}};
 /// Least share of the time between the first and the last row that the frame times must fill.
@@ -42,6 +41,14 @@ template <std::size_t N>
 bool is_one_of(const std::string& name, const std::array<const char*, N>& names) {
   return std::any_of(names.begin(), names.end(),
                      [&](const char* one) { return folded_name(one) == folded_name(name); });
+}
+
+/// True for a column that holds frame rates.
+bool is_rate(const std::string& column) {
+  const std::string name = folded_name(column);
+  for (const char* rate : {"fps", "frame_rate", "framerate", "frame rate", "refresh_rate"})
+    if (name.find(rate) != std::string::npos) return true;
+  return false;
 }
 
 struct Column {
@@ -118,12 +125,10 @@ class FrameLogReader {
  private:
   void add_column(std::size_t place) {
     const std::string& name = table_.names()[place];
+    if (is_rate(name))
+      table_.fail("the column " + base::shortened(name) + " holds rates, not frame times",
+                  "choose a column of frame times in ms, or record each frame, for example with PresentMon");
     const std::string folded = folded_name(name);
-    for (const char* rate : {"fps", "frame_rate", "framerate", "frame rate", "refresh_rate"})
-      if (folded.find(rate) != std::string::npos)
-        table_.fail(
-            "the column " + base::shortened(name) + " holds rates, not frame times",
-            "choose a column of frame times in ms, or record each frame, for example with PresentMon");
     columns_.push_back({place, folded == "time (ms)" || folded == "time(ms)"});
   }
 
@@ -138,8 +143,7 @@ class FrameLogReader {
     add_first_of(display_columns);
     if (!columns_.empty()) return;
     for (const std::string& name : table_.names()) {
-      const std::string folded = folded_name(name);
-      if (folded.find("frame_rate") != std::string::npos || folded.find("framerate") != std::string::npos)
+      if (is_rate(name))
         table_.fail("has no column of frame times. " + base::shortened(name) +
                         " is a mean rate, and a mean does not determine the frame times",
                     "record each frame, for example with PresentMon");
@@ -238,8 +242,8 @@ class FrameLogReader {
 
   static std::string of(const FrameLog& log) { return log.source.empty() ? "" : " of " + log.source; }
 
-  /// Refuses frame times that do not fill the time from the first row to the last, or exceed it. On the
-  /// display a window may have gaps, since frames are not all shown.
+  /// Refuses intervals that do not fill the time from the first row to the last, or exceed it. An interval on
+  /// the display spans the frames that were never shown, so display intervals fill the time too.
   void check_clock(const Window& window, std::size_t i) const {
     if (!window.began_ms || window.rows < 2) return;
     const FrameLog& log = window.logs[i];

@@ -9,7 +9,8 @@
 
 namespace study {
 
-/// What the intervals of a log lie between. Named: a column that the user named, whose meaning is not known.
+/// The events between which the intervals of a log were measured. Named: the user named the column, and the
+/// events are not known.
 enum class Intervals { Frames, DisplayChanges, Named };
 
 /// The frame times of one window (swap chain) of one program, from one column of a log.
@@ -40,7 +41,8 @@ struct FrameLog {
 ///
 /// base::Error at file:line for a file that is no such table, and for a frame time outside shortest_trace_ms
 /// to longest_trace_ms. base::Error at the file for a log that holds samples or mean rates instead of each
-/// frame, for display changes that count frames which were never shown, and if no window has two frame times.
+/// frame, and if no window has two frame times. base::Error at file:line if the display column has an
+/// interval for a frame that was never shown.
 std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column);
 
 }  // namespace study

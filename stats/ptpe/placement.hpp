@@ -49,8 +49,8 @@ struct PlacementRules {
   /// Without such trials the form of the contour, the just satisfactory mean frame rate over the standard
   /// deviation, cannot be checked, and estimate_direct() has no fit.
   int between = 3;
-  /// Ratio, above 1, of a mean frame rate that is wanted above the estimated contour to the contour, and of
-  /// the contour to one that is wanted below it.
+  /// Factor, above 1, between the estimated contour and the mean frame rates that are shown above and below
+  /// it.
   double bracket = 1.5;
   int most_of_one = 1000000;  ///< largest number of times that a setting is shown in a session
 };

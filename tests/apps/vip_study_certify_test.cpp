@@ -20,7 +20,7 @@ apps::test::Ended vip_study(const std::string& arguments) {
 
 const std::string logs = VIP_TEST_DIR "/libstudy/fixtures/frame_logs/";
 
-/// The words of the certificate's line that has all of these texts.
+/// Splits the certificate's line that contains all of `texts` into words; empty if there is no such line.
 std::vector<std::string> words_of(const std::string& out, const std::vector<std::string>& texts) {
   std::istringstream lines(out);
   for (std::string line; std::getline(lines, line);) {
@@ -32,7 +32,7 @@ std::vector<std::string> words_of(const std::string& out, const std::vector<std:
   return {};
 }
 
-/// Compares a line of the certificate with moments.awk.
+/// Expects the numbers that moments.awk computes in the certificate's line of this column and program.
 void expect_moments(const std::string& file, const std::string& column, const std::string& program = "",
                     const std::string& awk = "-F ,") {
   SCOPED_TRACE(file + " " + column);
@@ -77,7 +77,7 @@ TEST(VipStudyCertifyE2e, RefusesLogsThatDoNotHoldEveryFrame) {
   const auto sampled = vip_study("certify " + logs + "mangohud.csv");
   EXPECT_EQ(sampled.exit_code, 1);
   EXPECT_THAT(sampled.out, testing::HasSubstr("so the log does not hold every frame"));
-  // In logs of PresentMon's application, frames that were never shown have an interval on the display.
+  // PresentMon's application writes a display interval for frames that were never shown, too.
   const auto counted = vip_study("certify " + logs + "presentmon_app.csv");
   EXPECT_EQ(counted.exit_code, 1);
   EXPECT_THAT(counted.out, testing::HasSubstr("for a frame that was never shown"));

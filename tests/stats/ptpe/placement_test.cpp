@@ -38,9 +38,8 @@ TEST(Placement, BracketsTheContourOfARaterWithoutNoise) {
     }
     if (trial > 12) {
       EXPECT_TRUE(one.delta == 0 || one.delta == 20) << trial;
-      const double distance =
-          (one.mu > contour ? 1 : -1) * std::abs(std::log(one.mu / contour)) / std::log(1.5);
-      EXPECT_NEAR(distance, std::round(distance), 0.45) << trial;
+      const double distance = std::log(one.mu / contour) / std::log(1.5);
+      EXPECT_NEAR(distance, std::round(distance), 0.35) << trial;
       EXPECT_LE(std::abs(std::round(distance)), 1) << trial;
       smallest += one.delta == 0;
       on += std::round(distance) == 0;
