@@ -45,7 +45,7 @@ void print_public(const study::PublicExport& done, const std::string& folder) {
 void add_export_command(CLI::App& app) {
   struct Options {
     std::string database, csv, bids, psych_ds;
-    bool words = false, gaze = false, incomplete = false, excel = false;
+    bool words = false, gaze = false, incomplete = false, excel = false, presentmon = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App& sub = *app.add_subcommand("export", "Write a database as files for others");
@@ -63,6 +63,9 @@ void add_export_command(CLI::App& app) {
   sub.add_flag("--excel", options->excel,
                "CSV: for spreadsheets that open a file at a double click: a byte-order mark, and where the "
                "locale's decimal mark is a comma, semicolons and decimal commas")
+      ->needs(csv);
+  sub.add_flag("--presentmon", options->presentmon,
+               "CSV: also the frame times of each showing in the format of PresentMon")
       ->needs(csv);
   sub.add_flag("--gaze", options->gaze,
                "CSV, BIDS: also gaze, of those who allowed it; mouse positions are marked as such");
@@ -88,7 +91,8 @@ void add_export_command(CLI::App& app) {
     if (file.incomplete) print_lacking(file.path, study::lacking_of(file.path));
     if (!options->csv.empty()) {
       const study::CsvDialect dialect = options->excel ? study::excel_dialect() : study::CsvDialect{};
-      print_files(study::export_csv(file, options->csv, {options->words, options->gaze, dialect}));
+      print_files(study::export_csv(file, options->csv,
+                                    {options->words, options->gaze, options->presentmon, dialect}));
       if (options->excel)
         std::printf("%s: '%c' between fields, '%c' as the decimal mark, as the locale has it\n",
                     options->csv.c_str(), dialect.separator, dialect.decimal);

@@ -146,3 +146,29 @@ TEST(VipStudyCertifyE2e, ReadsUnrealAndOlderMangoHud) {
   std::ofstream(mangohud) << "os,cpu,gpu\nx,y,z\nfps,frametime,elapsed\n50,20000,0\n50,20000,20000000\n";
   EXPECT_THAT(vip_study("certify " + mangohud.string()).out, testing::HasSubstr("2 frames in 0.040000 s"));
 }
+
+TEST(VipStudyCertifyE2e, AnExportForPresentMonHasTheCertificateOfEachShowing) {
+  const study::test::TemporaryFolder folder;
+  const std::string database = (folder / "s.db").string(), csv = (folder / "csv").string();
+  ASSERT_EQ(
+      vip_study("run ptpe_pilot --db " + database + " --participants 1 --observer constant:4").exit_code, 0);
+  const auto exported = vip_study("export --db " + database + " --csv " + csv + " --presentmon");
+  ASSERT_EQ(exported.exit_code, 0) << exported.out;
+  EXPECT_THAT(exported.out, testing::HasSubstr(" showings, 0 left out)"));
+  const auto awk = apps::test::run_shell(
+      "awk -F , 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } "
+      "NR > 1 { print $at[\"presentation_id\"], $at[\"mean_fps\"], $at[\"sd_fps\"] }' " +
+      csv + "/presentations.csv");
+  const auto certificate = vip_study("certify " + csv + "/presentmon/*.csv");
+  ASSERT_EQ(certificate.exit_code, 0) << certificate.out;
+  std::istringstream showings(awk.out);
+  int count = 0;
+  double expected_mean = 0, expected_sd = 0;
+  for (int id = 0; showings >> id >> expected_mean >> expected_sd; ++count) {
+    const auto words = words_of(certificate.out, {"showing_" + std::to_string(id) + ".csv "});
+    ASSERT_GE(words.size(), 15u) << certificate.out;
+    EXPECT_NEAR(std::stod(words[words.size() - 14]), expected_mean, 5.1e-4) << id;
+    EXPECT_NEAR(std::stod(words[words.size() - 12]), expected_sd, 5.1e-4) << id;
+  }
+  EXPECT_EQ(count, 21) << awk.out;
+}

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "libstudy/store/export/presentmon.hpp"
 #include "libstudy/store/export/sickness_table.hpp"
 #include "libstudy/store/read/run_settings.hpp"
 #include "libstudy/store/refusals.hpp"
@@ -94,7 +95,7 @@ constexpr const char* dictionary_file = "dictionary.csv";
 constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
 
 bool is_csv_name(const std::string& name) {
-  if (name == ratings_file || name == dictionary_file) return true;
+  if (name == ratings_file || name == dictionary_file || is_presentmon_name(name)) return true;
   const bool toml = name.ends_with(".toml");
   if (toml && (name.starts_with("protocol_") || name.starts_with("setting_"))) return true;
   for (const SicknessTable& table : sickness_tables({})) {
@@ -184,6 +185,8 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
     for (const SicknessColumn& column : table.columns)
       write((table.name + ".csv").c_str(), {"", column.name, column.type, column.meaning});
   }
+  if (choice.presentmon)
+    for (const ColumnMeaning& column : presentmon_columns()) write("presentmon/*.csv", column);
   file.finish();
   return rows;
 }
@@ -254,6 +257,7 @@ std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& fol
   files.push_back({ratings_file, write_csv(*database, rating_table_sql(*database), draft, ratings_file)});
   for (const SicknessTable& table : sickness_tables(read_sickness(*database)))
     files.push_back({table.name + ".csv", write_sickness(table, draft, table.name + ".csv")});
+  if (choice.presentmon) files.push_back(write_presentmon(*database, draft));
   files.push_back({dictionary_file, write_dictionary(*database, draft, choice)});
   write_protocols(*database, draft);
   for (const RunSetting& setting : run_settings(*database))

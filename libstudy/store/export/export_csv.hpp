@@ -17,6 +17,7 @@ namespace study {
 struct CsvChoice {
   bool words = false;       ///< words.csv: participants' free text; notes.csv: the experimenter's notes
   bool gaze = false;        ///< gaze.csv, heads.csv, gaze_validations.csv
+  bool presentmon = false;  ///< write_presentmon() (presentmon.hpp)
   CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets, which dictionary.csv then describes
 };
 
