@@ -139,7 +139,7 @@ function(vip_unity target)
 endfunction()
 
 # vip_test_units(TARGET [EACH n] [APART sources...]) compiles the *_test.cpp files of each folder in units of
-# up to n files (default: 8), which unit.cmake writes. Unlike the sources of vip_unity(), these files may
+# up to n files (default: 24), which unit.cmake writes. Unlike the sources of vip_unity(), these files may
 # define equal names. A source with compile options of its own is compiled separately. List after APART each
 # source that defines something that a header declares, such as a printer for GoogleTest. Call
 # vip_test_units() after the properties of the sources are set.
@@ -149,7 +149,7 @@ function(vip_test_units target)
   endif()
   cmake_parse_arguments(arg "" "EACH" "APART" ${ARGN})
   if(NOT arg_EACH)
-    set(arg_EACH 8)
+    set(arg_EACH 24)
   endif()
   set(apart)
   foreach(source IN LISTS arg_APART)

@@ -21,7 +21,7 @@ installed() {
 }
 trap installed EXIT  # wait for the installation, also after an error
 cmake --preset dev
-cmake --build --preset dev
+cmake --build --preset dev --parallel "$(nproc)"
 installed
 ./scripts/tidy.sh
 ctest --preset dev
