@@ -31,29 +31,12 @@ struct CertifyOptions {
   bool arithmetic = false;
 };
 
-/// The frames of a log as a trial whose frames came when they were due.
-study::PlayedTrial trial_of(const study::FrameLog& log) {
-  study::PlayedTrial played;
-  double now_ms = 0;
-  for (const double ms : log.frame_ms) {
-    study::FrameRecord frame;
-    frame.index = static_cast<std::int64_t>(played.frames.size());
-    frame.scheduled_ns = frame.times.submitted_ns = played.end_ns;
-    if (log.kind == study::Intervals::DisplayChanges) frame.times.actual_display_ns = played.end_ns;
-    played.frames.push_back(frame);
-    now_ms += ms;
-    played.end_ns = std::llround(1e6 * now_ms);
-  }
-  return played;
-}
-
 study::TimingVerdict verdict_of(const study::FrameLog& log, const std::optional<study::FpsSetting>& nominal,
                                 study::FpsMean mean) {
-  const auto grade = log.kind == study::Intervals::DisplayChanges ? study::TimingGrade::DisplayFeedback
-                                                                  : study::TimingGrade::CpuSubmit;
+  const study::TimingGrade grade = study::grade_of_log(log);
   study::PacingRules rules;
   rules.mean = mean;
-  const study::PlayedTrial played = trial_of(log);
+  const study::PlayedTrial played = study::played_of_log(log);
   return nominal ? study::judge_trial(*nominal, rules, played, {}, grade)
                  : study::describe_trial(played, grade);
 }

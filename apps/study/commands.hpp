@@ -21,6 +21,7 @@ void add_export_command(CLI::App& app);
 void add_consent_command(CLI::App& app);
 void add_withdraw_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
+void add_import_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 

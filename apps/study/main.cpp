@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   apps::add_consent_command(*app);
   apps::add_withdraw_command(*app);
   apps::add_merge_command(*app);
+  apps::add_import_command(*app);
   apps::add_salvage_command(*app);
   return apps::run_program(*app, argc, argv);
 }

@@ -42,6 +42,18 @@ void print_session_row(const study::SessionRow& session) {
       session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
+/// Says from which program and source a session was imported, and what its timing rests on.
+void print_import(const study::SessionRow& session) {
+  if (session.imported_from.empty()) return;
+  std::printf("    imported from %s, SHA-256 of the source %s\n",
+              base::shortened(session.imported_from).c_str(), base::shortened(session.source_sha256).c_str());
+  if (session.not_recorded > 0)
+    std::printf("    timing of %lld trials not recorded\n", static_cast<long long>(session.not_recorded));
+  if (session.not_recorded < session.trials)
+    std::printf("    frames of %lld trials imported; they had no schedule, so none counts as late\n",
+                static_cast<long long>(session.trials - session.not_recorded));
+}
+
 /// Prints one line for each factor with the trials of each level, such as "hitch: h33 20 of 40, h50 20 of
 /// 40". An adaptive procedure chooses levels during the session, so that only answered trials are counted.
 void print_levels(const study::ProtocolRow& protocol, bool adaptive) {
@@ -86,7 +98,9 @@ void status(const std::string& database, bool incomplete) {
     std::printf("  %lld sessions, %lld of %lld trials answered\n", static_cast<long long>(protocol.sessions),
                 static_cast<long long>(protocol.answered), static_cast<long long>(protocol.trials));
     for (const study::SessionRow& session : found.sessions) {
-      if (session.protocol_id == protocol.id) print_session_row(session);
+      if (session.protocol_id != protocol.id) continue;
+      print_session_row(session);
+      print_import(session);
     }
     print_cells({database, incomplete}, protocol);
   }

@@ -95,7 +95,8 @@ std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
   const bool impossible =
       !session.first_answer_utc.empty() && session.first_answer_utc < base::before_vip_lab_utc;
   const bool back = told_s && least_s && *told_s < *least_s - small_step_s;
-  if (session.not_before_utc.empty() || (!impossible && !back)) return {};
+  // Answers of another program are older than their import.
+  if (!session.imported_from.empty() || session.not_before_utc.empty() || (!impossible && !back)) return {};
   return DoubtfulTime{session.participant, session.station, session.first_answer_utc, session.not_before_utc,
                       impossible};
 }
@@ -153,6 +154,8 @@ class Collector {
     ++data_.stations[session.station];
     ++data_.displays[session.display];
     if (!session.angles.empty()) ++data_.angles[session.angles];
+    if (!session.imported_from.empty())
+      data_.imported[session.imported_from].push_back(session.source_sha256);
     for (const auto& setting : session.settings) ++data_.settings[setting_words(setting)];
     if (!session.unblinded.empty()) ++data_.unblinded[session.unblinded];
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
@@ -266,7 +269,14 @@ class Collector {
 
   void add_rating(const TaskSession& session, const TaskTrial& trial, double score) {
     const auto& nominal = trial.first.nominal;
-    const auto& shown = trial.first.realised;
+    stats::FpsMoments shown = trial.first.realised;
+    if (!trial.first.has_rates()) {
+      shown.mean = shown.mean_arithmetic = nominal.mean;
+      shown.sd = nominal.sd;
+      ++data_.asked_rates;
+    } else if (!trial.first.framed) {
+      ++data_.stated_rates;
+    }
     data_.ratings.push_back({person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic,
                              shown.sd, score, trial.position});
   }
@@ -314,6 +324,19 @@ std::string TaskData::gaze_problem() const {
   if (sources.empty()) return {};
   return "gaze was not tracked in every session (" + sources + " of " + std::to_string(sessions) +
          "), and what the methods refine depends on it";
+}
+
+std::string TaskData::imported_words() const {
+  std::string out;
+  for (const auto& [tool, sessions] : imported) {
+    std::string hashes;
+    for (const std::string& hash : std::set<std::string>(sessions.begin(), sessions.end()))
+      hashes += (hashes.empty() ? "" : ", ") + hash.substr(0, 12);
+    out += (out.empty() ? "" : "; ") + std::to_string(sessions.size()) +
+           (sessions.size() == 1 ? " session from " : " sessions from ") + tool +
+           " (SHA-256 of the sources " + hashes + ")";
+  }
+  return out;
 }
 
 TaskData collect_task(const TaskStudy& study, const ChosenTask& chosen, const stats::ExclusionRules& rules) {

@@ -84,7 +84,12 @@ struct TaskData {
   std::vector<std::string> simulated;  ///< participants simulated by observer models, including excluded ones
   std::vector<std::string> observers;  ///< the distinct observer models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
-      mixed_pictures;            ///< number of analysed sessions with each value, such as gaze "tracked"
+      mixed_pictures;  ///< number of analysed sessions with each value, such as gaze "tracked"
+  /// Imported sessions with analysed answers: by program, the SHA-256 of the source of each session.
+  std::map<std::string, std::vector<std::string>> imported;
+  /// Pilot: analysed ratings whose frame rate is the one that the source states, and the one that was asked
+  /// for, as no frames were recorded.
+  int stated_rates = 0, asked_rates = 0;
   std::string first_answer_utc;  ///< earliest first answer of the sessions without doubtful times, in UTC;
                                  ///< empty: none
   std::vector<DoubtfulTime> doubtful_times;
@@ -108,6 +113,8 @@ struct TaskData {
   /// The reason why hypotheses that need gaze cannot be tested: gaze was not tracked in some analysed
   /// session. Empty if gaze was tracked in every analysed session.
   std::string gaze_problem() const;
+  /// "2 sessions from PsychoPy (SHA-256 of the sources 0123456789ab, ...)"; empty: nothing was imported.
+  std::string imported_words() const;
 };
 
 /// Collects the answers to the chosen protocol and question. The result may hold no answer.

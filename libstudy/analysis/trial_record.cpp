@@ -18,13 +18,19 @@ stats::TrialTiming timing_of(const TaskShowing& shown) {
   return *shown.verdict == Verdict::Degraded ? stats::TrialTiming::Degraded : stats::TrialTiming::Fail;
 }
 
+/// True if the pilot's predictor is known. Of an imported trial without frames it is the rate that the source
+/// states, or the one that was asked for; a flag of the fit says so.
+bool has_predictor(const TaskShowing& shown) {
+  return shown.realised.frames > 0 || (!shown.framed && (shown.has_rates() || shown.nominal.mean > 0));
+}
+
 /// Excludes answered trials of a pilot without recorded frames. Their realised frame rate, the pilot's
 /// predictor, is unknown.
 void exclude_unrecorded(std::vector<stats::Exclusion>& list, const TaskSession& session,
                         const Question& question) {
   for (const TaskTrial& trial : session.trials) {
     const auto record = record_of(session, trial, question);
-    if (trial.kind == "practice" || record.answers == 0 || trial.first.realised.frames > 0 ||
+    if (trial.kind == "practice" || record.answers == 0 || has_predictor(trial.first) ||
         stats::is_excluded(list, session.participant, session.visit, trial.position))
       continue;
     list.push_back({session.participant, session.visit, trial.position, "timing",

@@ -15,7 +15,7 @@ double answer_to(const TaskTrial& trial, const Question& question);
 stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial, const Question& question);
 
 /// Applies the rules to the trials (except practice) and the answered catch pages of all sessions with
-/// answers. In a pilot, also excludes trials without recorded frames.
+/// answers. In a pilot, also excludes trials without recorded frames, unless they are imported.
 std::vector<stats::Exclusion> find_exclusions(const TaskProtocol& protocol, const Question& question,
                                               const stats::ExclusionRules& rules);
 

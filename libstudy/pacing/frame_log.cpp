@@ -279,4 +279,23 @@ std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const s
   return FrameLogReader(file, column).read();
 }
 
+PlayedTrial played_of_log(const FrameLog& log) {
+  PlayedTrial played;
+  double now_ms = 0;
+  for (const double ms : log.frame_ms) {
+    FrameRecord frame;
+    frame.index = static_cast<std::int64_t>(played.frames.size());
+    frame.scheduled_ns = frame.times.submitted_ns = played.end_ns;
+    if (log.kind == Intervals::DisplayChanges) frame.times.actual_display_ns = played.end_ns;
+    played.frames.push_back(frame);
+    now_ms += ms;
+    played.end_ns = std::llround(1e6 * now_ms);
+  }
+  return played;
+}
+
+TimingGrade grade_of_log(const FrameLog& log) {
+  return log.kind == Intervals::DisplayChanges ? TimingGrade::DisplayFeedback : TimingGrade::CpuSubmit;
+}
+
 }  // namespace study

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/pacing/pacer.hpp"
+
 namespace study {
 
 /// The events between which the intervals of a log were measured. Named: the user named the column, and the
@@ -44,5 +46,10 @@ struct FrameLog {
 /// frame, and if no window has two frame times. base::Error at file:line if the display column has an
 /// interval for a frame that was never shown.
 std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column);
+
+/// The frames of a log as a trial whose frames came when they were due: a log has no schedule.
+PlayedTrial played_of_log(const FrameLog& log);
+/// B (DisplayFeedback) for changes of the picture, else D (CpuSubmit).
+TimingGrade grade_of_log(const FrameLog& log);
 
 }  // namespace study

@@ -195,6 +195,11 @@ Json time_json(const std::string& frozen, const Json& used) {
                   : rehearsal ? " as test data."
                               : ".") +
                  order.text;
+  if (used.contains("imported")) {
+    if (before) json["frozen_before"] = Json();
+    json["text"] = json["text"].get<std::string>() +
+                   " These answers were imported: only their source says when they were given.";
+  }
   return json;
 }
 

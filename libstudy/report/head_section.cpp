@@ -64,6 +64,12 @@ std::string banners(const Field& root) {
     out += "<p class=\"warning\"><strong>Simulated participants: " + count(study["simulated_people"]) +
            "</strong> (" + observers(root) + "). All answers of " + base::enumerated(simulated) +
            " come from a model: they say nothing about people.</p>\n";
+  const auto imported =
+      parts_where(root, [](const Field& protocol) { return !protocol["imported"].members().empty(); });
+  if (!imported.empty())
+    out +=
+        "<p class=\"warning\"><strong>Imported.</strong> Sessions of " + base::enumerated(imported) +
+        " were recorded by another program: Methods names it, and the notes its files by their hashes.</p>\n";
   return out;
 }
 

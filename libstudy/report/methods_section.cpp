@@ -42,6 +42,10 @@ std::string protocols_text(const Field& study) {
     if (!protocol["unblinded"].members().empty())
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
+    for (const auto& [tool, sources] : protocol["imported"].members())
+      out += "Of " + title + ", " + std::to_string(sources.entries().size()) +
+             " sessions with analysed answers were recorded elsewhere, by " + svg::escaped(tool) +
+             ", and imported. ";
     out += effects_text(protocol, title);
     if (protocol["overlay"].exists())
       out += "Over the water of every stimulus of " + title + " " + words(protocol["overlay"]) +

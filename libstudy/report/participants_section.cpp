@@ -46,9 +46,10 @@ bool any_judged(const Field& timing) {
   return false;
 }
 
+/// True if a showing has frames, but no schedule to judge them by.
 bool any_unjudged(const Field& timing) {
   for (const Field& c : timing.entries())
-    if (c["unjudged"].number() > 0) return true;
+    if (c["unjudged"].number() > c["not_recorded"].number()) return true;
   return false;
 }
 
@@ -156,7 +157,12 @@ std::string timing_of(const Field& root, const Field& total) {
       paragraph("Of " + count(total["showings"]) + " showings " + count(total["pass"]) + " passed, " +
                 count(total["degraded"]) + " were degraded, " + count(total["fail"]) + " failed and " +
                 count(total["unjudged"]) + " could not be judged. In " + count(total["flawed_cells"]) +
-                " of " + count(total["cells"]) + " cells a showing was degraded or failed.");
+                " of " + count(total["cells"]) + " cells a showing was degraded or failed." +
+                (total["not_recorded"].exists()
+                     ? " Of " + count(total["not_recorded"]) +
+                           " imported showings, counted as not judged, no frame was recorded: when they were "
+                           "shown is not known. Their realised rates are what the source states, if it does."
+                     : ""));
   if (total["flawed_cells"].number() > 0)
     body += figure(timing_chart(root["timing"], key),
                    title + ": verdicts by " +

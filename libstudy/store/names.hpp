@@ -16,6 +16,8 @@ inline constexpr const char* revealed_event = "setting revealed";
 inline constexpr const char* mirror_event = "mirror opened";
 /// Event kind: the mirror showed pages but no stimulus, so the experimenter stayed blind to the session.
 inline constexpr const char* pages_mirror_event = "pages mirrored";
+/// Event kind: the session was imported; the detail names the tool and the hashes of source and mapping.
+inline constexpr const char* imported_event = "imported";
 
 /// The inverse of verdict_name(). Returns Fail for any other name; the schema's CHECK excludes other names.
 inline Verdict verdict_of(const std::string& name) {

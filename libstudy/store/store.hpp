@@ -22,6 +22,7 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/file/writer_lock.hpp"
+#include "libstudy/store/imported.hpp"
 
 namespace study {
 
@@ -170,6 +171,12 @@ class Store {
   /// two protocols is test data.
   std::int64_t add_run(const RunPlan& run);
 
+  /// Writes sessions that another program recorded, with their answers and frames, in one transaction. The
+  /// protocol has one stimulus block and no pairs. base::Error, with nothing stored, as add_run(), and if the
+  /// database holds a session of the same source or a participant with the same code.
+  void add_import(const Protocol& protocol, const ImportTerms& terms,
+                  const std::vector<ImportedSession>& sessions);
+
   /// Stores the framing of scenes on the display of a resumed session, if it changed. Later presentations
   /// refer to the new framing.
   void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
@@ -281,8 +288,14 @@ class Store {
   /// Ends a transaction: writes its rows to the journal, then commits it to the database.
   void commit(sqlite::Transaction& transaction);
   std::int64_t find_or_add_protocol(const RunPlan& run);
-  void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
-                   const SessionPlan& plan, const std::string& not_before_utc);
+  std::int64_t insert_run(const std::string& options);
+  std::int64_t add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
+                           const SessionPlan& plan, const std::string& not_before_utc);
+  void refuse_imported(const ImportedSession& session);
+  void insert_imported_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
+                               const ImportTerms& terms, const ImportedSession& imported);
+  void insert_imported_trial(const Protocol& protocol, const ImportedTrial& trial, std::int64_t session,
+                             std::int64_t trial_id);
   void check_newcomer(std::int64_t protocol_id, const SessionPlan& plan);
   void mark_cut_presentations();
   void mark_done(std::int64_t session, std::int64_t unit, const std::string& now,

@@ -219,17 +219,21 @@ std::int64_t Store::add_run(const RunPlan& run) {
   Transaction transaction(*database_);
   const std::string not_before_utc = newest_utc();
   const std::int64_t protocol_id = find_or_add_protocol(run);
-  const std::int64_t run_id = Statement(*database_,
-                                        "INSERT INTO run (uid, started_utc, program_version, options) "
-                                        "VALUES (lower(hex(randomblob(16))),?,?,?)")
-                                  .bind_all(base::utc_now(), base::version(), run.options)
-                                  .run();
+  const std::int64_t run_id = insert_run(run.options);
   for (const SessionPlan& plan : run.sessions)
     add_session(run_id, protocol_id, run.protocol, plan, not_before_utc);
   give_labels(*database_);
   commit(transaction);
   keep_file();
   return run_id;
+}
+
+std::int64_t Store::insert_run(const std::string& options) {
+  return Statement(*database_,
+                   "INSERT INTO run (uid, started_utc, program_version, options) "
+                   "VALUES (lower(hex(randomblob(16))),?,?,?)")
+      .bind_all(base::utc_now(), base::version(), options)
+      .run();
 }
 
 std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
@@ -280,8 +284,8 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   }
 }
 
-void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
-                        const SessionPlan& plan, const std::string& not_before_utc) {
+std::int64_t Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
+                                const SessionPlan& plan, const std::string& not_before_utc) {
   check_newcomer(protocol_id, plan);
   std::optional<int> number, count;
   if (plan.station_number) {
@@ -308,6 +312,7 @@ void Store::add_session(std::int64_t run_id, std::int64_t protocol_id, const Pro
   insert_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);
   insert_event(session, {}, "planned", "program " + base::version(), {});
+  return session;
 }
 
 void Store::add_framing(std::int64_t session, const std::vector<SceneFraming>& framing) {

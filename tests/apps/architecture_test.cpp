@@ -170,6 +170,7 @@ const Rooms rooms{
     {"libstudy/design", 4},
     {"libstudy/store", 5},
     {"libstudy/session", 6},
+    {"libstudy/store/import", 6},
     {"libstudy/store/merge", 6},
     {"libstudy/store/read", 6},
     {"libstudy/store/salvage", 6},

@@ -250,6 +250,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(4),
       upgrade_from(5),
       upgrade_from(6),
+      upgrade_from(8),
   };
   return flows;
 }

@@ -75,22 +75,26 @@ Json data_json(const TaskData& data) {
   std::map<std::string, int> verdicts, grades, rules;
   for (const auto& one : data.showings) {
     if (!one.analysed) continue;
-    ++verdicts[one.shown.verdict ? verdict_name(*one.shown.verdict) : "unjudged"];
-    ++grades[std::string(1, static_cast<char>(one.shown.grade))];
+    ++verdicts[one.shown.verdict  ? verdict_name(*one.shown.verdict)
+               : one.shown.framed ? "unjudged"
+                                  : "not recorded"];
+    if (one.shown.framed) ++grades[std::string(1, static_cast<char>(one.shown.grade))];
   }
   for (const auto& one : data.exclusions) rules[one.rule] += one.answers;
-  return {{"protocol", {{"name", data.protocol.name}, {"sha256", data.protocol.sha256}}},
-          {"question", data.question.id},
-          {"test_data", data.test_data},
-          {"simulated_participants", data.simulated.size()},
-          {"used", {{"by_verdict", verdicts}, {"by_grade", grades}}},
-          {"excluded",
-           {{"answers_by_rule", rules},
-            {"practice", data.flow.practice},
-            {"repeat", data.flow.repeat},
-            {"unanswered", data.flow.trials_planned - data.flow.trials_answered},
-            {"sessions_of_test_data", data.flow.test_left_out},
-            {"sessions_simulated", data.flow.simulated_left_out}}}};
+  Json json{{"protocol", {{"name", data.protocol.name}, {"sha256", data.protocol.sha256}}},
+            {"question", data.question.id},
+            {"test_data", data.test_data},
+            {"simulated_participants", data.simulated.size()},
+            {"used", {{"by_verdict", verdicts}, {"by_grade", grades}}},
+            {"excluded",
+             {{"answers_by_rule", rules},
+              {"practice", data.flow.practice},
+              {"repeat", data.flow.repeat},
+              {"unanswered", data.flow.trials_planned - data.flow.trials_answered},
+              {"sessions_of_test_data", data.flow.test_left_out},
+              {"sessions_simulated", data.flow.simulated_left_out}}}};
+  if (!data.imported.empty()) json["imported"] = data.imported;
+  return json;
 }
 
 void add_provenance(Json& json) {

@@ -77,6 +77,16 @@ void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::P
     flags.push_back(
         {"simulated", count_words(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
   }
+  if (!data.imported.empty()) flags.push_back({"imported", "imported: " + data.imported_words()});
+  if (data.asked_rates > 0)
+    flags.push_back({"timing_not_recorded",
+                     count_words(data.asked_rates, "rating") +
+                         " without recorded timing enter at the mean and standard deviation that were asked "
+                         "for, under the harmonic and the arithmetic mean alike"});
+  if (data.stated_rates > 0)
+    flags.push_back({"timing_stated", count_words(data.stated_rates, "rating") +
+                                          " without recorded frames enter at the frame rates that the source "
+                                          "states"});
   for (const auto& protocol : data.set_aside)
     flags.push_back(
         {"protocol_left_out", "protocol " + protocol.name + ", left out: it holds no real answers"});

@@ -54,6 +54,7 @@ Json protocol_json(const TaskData& data) {
       {"mixed_pictures", data.mixed_pictures},
       {"effects", effects_json(data)},
       {"overlay", data.protocol.paint_temperature ? Json("temperature") : Json()}};
+  if (!data.imported.empty()) json["imported"] = data.imported;
   if (!data.doubtful_times.empty()) json["doubtful_times"] = doubtful_json(data);
   return json;
 }
@@ -74,6 +75,15 @@ std::vector<std::string> notes_of(const TaskData& data, const stats::AnalysisPla
   if (!data.simulated.empty())
     notes.push_back(task + counted(data.simulated.size(), "participant") +
                     " simulated by an observer model.");
+  if (!data.imported.empty()) notes.push_back(task + "imported: " + data.imported_words() + ".");
+  if (data.asked_rates > 0)
+    notes.push_back(
+        task + counted(static_cast<std::size_t>(data.asked_rates), "rating") +
+        " without recorded timing enter the fit at the mean and standard deviation that were asked "
+        "for, under the harmonic and the arithmetic mean alike.");
+  if (data.stated_rates > 0)
+    notes.push_back(task + counted(static_cast<std::size_t>(data.stated_rates), "rating") +
+                    " without recorded frames enter the fit at the frame rates that the source states.");
   for (const DoubtfulTime& one : data.doubtful_times)
     notes.push_back(task + "the clock showed " + one.told_utc + " at the first answer of " + one.participant +
                     ", after rows of the database of " + one.not_before_utc + ".");
@@ -113,10 +123,13 @@ struct Mean {
 /// Sums over the showings of one line of a timing table: of one scene, n_*, method and frame rate, or of one
 /// cell of a design with factors.
 struct TimedCell {
-  int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
+  int showings = 0, pass = 0, degraded = 0, fail = 0;
+  int unjudged = 0;      ///< without a verdict, those of `not_recorded` included
+  int not_recorded = 0;  ///< without frames
   std::map<std::string, int> grades;
   FpsSetting nominal;
-  double mean = 0, sd = 0, longest_ms = 0;
+  Mean mean, sd;  ///< over the showings whose rates are known
+  double longest_ms = 0;
   std::int64_t late = 0;
   Mean active_fraction, tau_fps;  ///< over the showings in which they were measured
 
@@ -128,9 +141,15 @@ struct TimedCell {
     } else {
       ++(*shown.verdict == Verdict::Pass ? pass : *shown.verdict == Verdict::Degraded ? degraded : fail);
     }
+    if (shown.has_rates()) {
+      mean.add(shown.realised.mean);
+      sd.add(shown.realised.sd);
+    }
+    if (!shown.framed) {
+      ++not_recorded;
+      return;
+    }
     ++grades[std::string(1, static_cast<char>(shown.grade))];
-    mean += shown.realised.mean;
-    sd += shown.realised.sd;
     longest_ms = std::max(longest_ms, shown.longest_ms);
     late += shown.late;
     active_fraction.add(shown.active_fraction);
@@ -139,21 +158,23 @@ struct TimedCell {
 };
 
 Json timed_json(const TimedCell& cell) {
-  const bool scheduled = cell.nominal.mean > 0;
-  return {{"showings", cell.showings},
-          {"pass", cell.pass},
-          {"degraded", cell.degraded},
-          {"fail", cell.fail},
-          {"unjudged", cell.unjudged},
-          {"grades", cell.grades},
-          {"nominal_mean_fps", scheduled ? Json(cell.nominal.mean) : Json()},
-          {"nominal_sd_fps", scheduled ? Json(cell.nominal.sd) : Json()},
-          {"realised_mean_fps", cell.mean / cell.showings},
-          {"realised_sd_fps", cell.sd / cell.showings},
-          {"longest_ms", cell.longest_ms},
-          {"late_frames", cell.late},
-          {"active_fraction", cell.active_fraction.json()},
-          {"tau_fps", cell.tau_fps.json()}};
+  const bool scheduled = cell.nominal.mean > 0, framed = cell.not_recorded < cell.showings;
+  Json json{{"showings", cell.showings},
+            {"pass", cell.pass},
+            {"degraded", cell.degraded},
+            {"fail", cell.fail},
+            {"unjudged", cell.unjudged},
+            {"grades", cell.grades},
+            {"nominal_mean_fps", scheduled ? Json(cell.nominal.mean) : Json()},
+            {"nominal_sd_fps", scheduled ? Json(cell.nominal.sd) : Json()},
+            {"realised_mean_fps", cell.mean.json()},
+            {"realised_sd_fps", cell.sd.json()},
+            {"longest_ms", framed ? Json(cell.longest_ms) : Json()},
+            {"late_frames", framed ? Json(cell.late) : Json()},
+            {"active_fraction", cell.active_fraction.json()},
+            {"tau_fps", cell.tau_fps.json()}};
+  if (cell.not_recorded > 0) json["not_recorded"] = cell.not_recorded;
+  return json;
 }
 
 }  // namespace
@@ -343,6 +364,7 @@ Json timing_totals_json(const Json& timing) {
     const auto add = [&](const char* key, int n) { total[key] = total.value(key, 0) + n; };
     for (const char* key : {"showings", "pass", "degraded", "fail", "unjudged"})
       add(key, cell.at(key).get<int>());
+    if (cell.contains("not_recorded")) add("not_recorded", cell.at("not_recorded").get<int>());
     add("cells", 1);
     add("flawed_cells", cell.at("degraded").get<int>() + cell.at("fail").get<int>() > 0 ? 1 : 0);
   }

@@ -187,6 +187,8 @@ Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
     problems.push_back("files of the bundle were altered: " + base::joined(frozen.altered));
   if (std::count(frozen.protocols.begin(), frozen.protocols.end(), data.protocol.sha256) == 0)
     problems.push_back("the bundle holds another protocol");
+  if (!data.imported.empty())
+    problems.push_back("answers were imported, and only their source says when they were given");
   if (!data.doubtful_times.empty())
     problems.push_back("the clock of a session is in doubt");
   else if (!data.first_answer_utc.empty() && frozen.frozen_utc >= data.first_answer_utc)

@@ -43,12 +43,13 @@ constexpr const char* event_tables_sql =
 
 Json event_columns() {
   return {
-      {"onset", described("start of the stimulus, from the first of the session; after the program began "
-                          "anew, as if it had gone on without a pause",
-                          "s")},
+      {"onset",
+       described("start of the stimulus, from the first of the session; after the program began "
+                 "anew, as if it had gone on without a pause; n/a: imported, and the source does not tell",
+                 "s")},
       {"duration",
        described("from the onset to the end of its last frame; the frames fill frames / mean_fps of "
-                 "it, after the program's preparation of the first; n/a: cut short",
+                 "it, after the program's preparation of the first; n/a: cut short, or not recorded",
                  "s")},
       {"trial_type", described("practice, stimulus or repeat")},
       {"trial", described("order among the session's trials, from 0")},
@@ -119,9 +120,11 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
   while (row.step()) {
     std::optional<std::int64_t> end_ns;
     if (!row.is_null(1)) end_ns = row.integer(1);
-    const std::int64_t onset_ns = time.onset_of(row.integer(0), end_ns);
-    std::vector<std::string> line{bids::seconds(onset_ns),
-                                  end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
+    std::vector<std::string> line{"n/a", "n/a"};
+    if (!row.is_null(0)) {
+      const std::int64_t onset_ns = time.onset_of(row.integer(0), end_ns);
+      line = {bids::seconds(onset_ns), end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
+    }
     for (int i = 2; i <= 25; ++i) line.push_back(field(row, i));
     line.push_back(field(row, event_values - 1));
     for (int i = 0; i < static_cast<int>(factors.size()); ++i) line.push_back(field(row, event_values + i));
@@ -174,17 +177,20 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
 }
 
 Json session_columns() {
-  return {{"acq_time", described("first stimulus, UTC")},
-          {"protocol", described("name in the protocol file")},
-          {"protocol_version", described("version in the protocol file")},
-          {"protocol_sha256", described("SHA-256 of the protocol")},
-          {"visit", described("visit of the participant under the protocol")},
-          {"test_data", described("1: never pooled with real data")},
-          {"observer", described("simulated observer that answered; n/a: a person")},
-          {"station", described("where it was recorded")},
-          {"gaze_source", described("tracked, head, mouse, fixed, fixation or none, as planned")},
-          {"state", described("open, done, or how it ended early")},
-          {"setting_sha256", described(setting_sha256_meaning)}};
+  return {
+      {"acq_time", described("first stimulus, UTC")},
+      {"protocol", described("name in the protocol file")},
+      {"protocol_version", described("version in the protocol file")},
+      {"protocol_sha256", described("SHA-256 of the protocol")},
+      {"visit", described("visit of the participant under the protocol")},
+      {"test_data", described("1: never pooled with real data")},
+      {"observer", described("simulated observer that answered; n/a: a person")},
+      {"station", described("where it was recorded")},
+      {"gaze_source", described("tracked, head, mouse, fixed, fixation or none, as planned")},
+      {"state", described("open, done, or how it ended early")},
+      {"imported_from", described("program that recorded the session elsewhere; n/a: vip-study recorded it")},
+      {"source_sha256", described("SHA-256 of the file from which its answers were imported")},
+      {"setting_sha256", described(setting_sha256_meaning)}};
 }
 
 /// Codes of the simulated participants, for whom an observer model answered.
@@ -210,17 +216,20 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
       people.push_back(
           {sub, field(session.participant), simulated.contains(session.participant) ? "1" : "0"});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
-                       "test_data", "observer", "station", "gaze_source", "state", "setting_sha256"}};
+                       "test_data", "observer", "station", "gaze_source", "state", "imported_from",
+                       "source_sha256", "setting_sha256"}};
     }
-    Statement row(database,
-                  "SELECT session.started_utc, p.name, p.version, p.sha256, session.visit, session.test_data "
-                  "OR p.test_data, "
-                  "session.observer, session.station, session.gaze_source, session.state, " +
-                      std::string(setting_sha256_sql) +
-                      " FROM session JOIN protocol p USING (protocol_id) WHERE session.session_id = ?");
+    Statement row(
+        database,
+        "SELECT session.started_utc, p.name, p.version, p.sha256, session.visit, session.test_data "
+        "OR p.test_data, "
+        "session.observer, session.station, session.gaze_source, session.state, session.imported_from, "
+        "session.source_sha256, " +
+            std::string(setting_sha256_sql) +
+            " FROM session JOIN protocol p USING (protocol_id) WHERE session.session_id = ?");
     row.bind_all(session.id).step();
     std::vector<std::string> line{"ses-" + session.session};
-    for (int i = 0; i < 11; ++i) line.push_back(field(row, i));
+    for (int i = 0; i < 13; ++i) line.push_back(field(row, i));
     rows->second.push_back(std::move(line));
   }
   writer.table("participants.tsv", people);
@@ -269,6 +278,16 @@ AboutDataSet about_data_set(Connection& database, std::span<const LabelledSessio
     if (names.insert(row.text(0)).second) out.name += (out.name.empty() ? "" : ", ") + row.text(0);
   }
   if (out.name.empty()) out.name = "a study without sessions";
+  Statement tool(database, "SELECT coalesce(imported_from, '') FROM session WHERE session_id = ?");
+  std::map<std::string, int> imported;
+  for (const LabelledSession& session : sessions) {
+    tool.reset();
+    tool.bind_all(session.id).step();
+    if (!tool.text(0).empty()) ++imported[tool.text(0)];
+  }
+  for (const auto& [name, count] : imported)
+    out.imported += (out.imported.empty() ? "" : " ") + std::to_string(count) +
+                    " sessions were recorded by " + name + " and imported.";
   const auto simulated = simulated_people(database, sessions);
   if (!simulated.empty())
     out.simulated = "For " + std::to_string(simulated.size()) + " of " + std::to_string(people.size()) +
@@ -296,7 +315,8 @@ PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool ga
       "README.md",
       std::string("# Ratings of real-time fluid\n\nBehaviour: what was shown when, how it was rated") +
           (gaze ? ", where people looked.\n" : ".\n") +
-          (about.simulated.empty() ? "" : "\n" + about.simulated + "\n") + "\nIn every table, " +
+          (about.simulated.empty() ? "" : "\n" + about.simulated + "\n") +
+          (about.imported.empty() ? "" : "\n" + about.imported + "\n") + "\nIn every table, " +
           formula_guard_meaning + ".\n");
   write_people(*database, sessions, writer);
   std::set<std::string> named;

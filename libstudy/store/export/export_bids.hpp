@@ -36,6 +36,7 @@ inline constexpr const char* description_file = "dataset_description.json";
 struct AboutDataSet {
   std::string name;       ///< names and versions of the protocols: "comfort 1.0, task1 1.1"
   std::string simulated;  ///< sentence with the number of simulated participants; empty: there are none
+  std::string imported;   ///< sentences with the numbers of imported sessions; empty: there are none
 };
 AboutDataSet about_data_set(sqlite::Connection& database, std::span<const LabelledSession> sessions);
 

@@ -108,7 +108,8 @@ void write_scores(const SicknessSession& session, const std::string& stem, const
 void write_description(Connection& database, const std::vector<LabelledSession>& sessions,
                        std::span<const SicknessSession> scored, const ExportDraft& draft) {
   const AboutDataSet about = about_data_set(database, sessions);
-  const std::string simulated = about.simulated.empty() ? "" : ". " + about.simulated;
+  const std::string simulated = (about.simulated.empty() ? "" : ". " + about.simulated) +
+                                (about.imported.empty() ? "" : ". " + about.imported);
   const Json json{{"@context", "https://schema.org/"},
                   {"@type", "Dataset"},
                   {"name", about.name},
@@ -121,7 +122,8 @@ void write_description(Connection& database, const std::vector<LabelledSession>&
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
       "what each column means. Empty: not known.\n\n" +
-          (about.simulated.empty() ? "" : about.simulated + "\n\n") + "In every column, " +
+          (about.simulated.empty() ? "" : about.simulated + "\n\n") +
+          (about.imported.empty() ? "" : about.imported + "\n\n") + "In every column, " +
           formula_guard_meaning + ".\n");
 }
 

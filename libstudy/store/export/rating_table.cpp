@@ -22,6 +22,8 @@ const std::vector<RatingColumn> fixed_columns{
     RatingColumn{"observer", "session", "session", "observer"},
     RatingColumn{"clock", "session", "session", "clock"},
     RatingColumn{"station", "session", "session", "station"},
+    RatingColumn{"imported_from", "session", "session", "imported_from"},
+    RatingColumn{"source_sha256", "session", "session", "source_sha256"},
     RatingColumn{"gaze_source", "session", "session", "gaze_source",
                  "coalesce(shown_1.gaze_source, session.gaze_source)",
                  "what the fluid followed: tracked, head, mouse, fixed, fixation or none", "TEXT"},

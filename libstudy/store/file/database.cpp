@@ -109,7 +109,7 @@ std::unique_ptr<Connection> snapshot(const fs::path& path) {
 
 constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_permissions.sql",
                                 "004_counting.sql", "005_headsets.sql", "006_effects.sql",
-                                "007_promises.sql", "008_factors.sql"};
+                                "007_promises.sql", "008_factors.sql",  "009_imports.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 
 std::string read_sql(const std::string& name) {

@@ -11,7 +11,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr const char* protocols_sql =
+constexpr const char* status_protocols_sql =
     "SELECT p.protocol_id, p.name, p.version, p.sha256, p.text, p.trial_seconds, p.test_data, "
     "count(DISTINCT s.session_id), count(t.trial_id), count(t.trial_id) FILTER (WHERE t.state = 'answered') "
     "FROM protocol p LEFT JOIN session s USING (protocol_id) LEFT JOIN trial t USING (session_id) "
@@ -24,7 +24,10 @@ constexpr const char* status_sessions_sql =
     "WHERE v.session_id = s.session_id AND p.state = 'interrupted'), s.ended_utc IS NOT NULL, s.state, "
     "count(u.unit_id), count(u.unit_id) FILTER (WHERE u.state = 'done'), count(t.excluded), "
     "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'gaze'), "
-    "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'sharing') "
+    "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'sharing'), "
+    "coalesce(s.imported_from, ''), coalesce(s.source_sha256, ''), "
+    "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) WHERE v.session_id = s.session_id "
+    "AND p.state = 'played' AND p.frames IS NULL) "
     "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
@@ -55,7 +58,7 @@ std::string certificate_sql(FpsMean mean, const std::string& of) {
          "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
          "JOIN showing w USING (presentation_id) WHERE " +
          of +
-         " = ? AND w.judged "
+         " = ? AND w.judged AND p.frames IS NOT NULL "
          "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";
 }
 
@@ -112,7 +115,7 @@ StudyStatus read_status(const StudyFile& study) {
   auto [database, lacking] = open_study(study);
   StudyStatus status;
   status.lacking = std::move(lacking);
-  for (Statement row(*database, protocols_sql); row.step();) {
+  for (Statement row(*database, status_protocols_sql); row.step();) {
     ProtocolRow protocol{.id = row.integer(0),
                          .name = row.text(1),
                          .version = row.text(2),
@@ -145,7 +148,10 @@ StudyStatus read_status(const StudyFile& study) {
                                .done = row.integer(12),
                                .excluded = row.integer(13),
                                .gaze = flag(row, 14),
-                               .sharing = flag(row, 15)});
+                               .sharing = flag(row, 15),
+                               .imported_from = row.text(16),
+                               .source_sha256 = row.text(17),
+                               .not_recorded = row.integer(18)});
   }
   for (Statement row(*database, "SELECT participant FROM tombstone ORDER BY participant"); row.step();)
     status.withdrawn.push_back(row.text(0));

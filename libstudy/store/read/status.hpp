@@ -48,6 +48,9 @@ struct SessionRow {
   std::int64_t units = 0, done = 0;   ///< pages and trials: all, and those that are done
   std::int64_t excluded = 0;          ///< number of excluded trials
   std::optional<bool> gaze, sharing;  ///< true: allowed; false: refused or unanswered; none: not asked
+  /// Program that recorded the session elsewhere, and the SHA-256 of its source; empty: not imported.
+  std::string imported_from = {}, source_sha256 = {};
+  std::int64_t not_recorded = 0;  ///< number of showings without a recorded frame
 };
 
 struct StudyStatus {

@@ -91,8 +91,9 @@ constexpr const char* task_sessions_sql =
     "session.session_id AND u.state <> 'planned'), 'planned', state), "
     "coalesce((SELECT min(p.gaze_source) FROM presentation p JOIN trial t USING (trial_id) WHERE "
     "t.session_id = session.session_id AND p.state = 'played' AND p.gaze_source <> session.gaze_source), "
-    "gaze_source), station, display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
-    "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
+    "gaze_source), station, display, coalesce((SELECT min(r.answered_utc) FROM unit u JOIN response r USING "
+    "(unit_id) WHERE u.session_id = session.session_id), iif(imported_from IS NULL, NULL, started_utc)), "
+    "(SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
     "iif(f.framing_id IS NULL, 'not known', printf('camera %.4g degrees, eye ', camera_angle_deg) || "
     "iif(visual_angle_deg IS NULL, 'not known', printf('%.4g degrees, ratio %.2f', visual_angle_deg, "
     "angle_ratio))) AS angles FROM trial t JOIN presentation p USING (trial_id) LEFT JOIN framing f USING "
@@ -104,7 +105,9 @@ constexpr const char* task_sessions_sql =
     "' and ') AS words FROM framing f WHERE f.session_id = session.session_id GROUP BY scene HAVING "
     "count(DISTINCT cells) > 1 ORDER BY scene)), stimulus, (SELECT detail FROM event e WHERE e.session_id = "
     "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1), "
-    "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)), uid "
+    "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)), "
+    "uid, "
+    "coalesce(imported_from, ''), coalesce(source_sha256, '') "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
@@ -176,7 +179,9 @@ class Reader {
                      .settings = run_settings(database_, session_.integer(0)),
                      .frame_costs = frame_costs(),
                      .not_before_utc = session_.text(15),
-                     .uid = session_.text(16)});
+                     .uid = session_.text(16),
+                     .imported_from = session_.text(17),
+                     .source_sha256 = session_.text(18)});
     }
     return out;
   }
@@ -216,7 +221,8 @@ class Reader {
     out.played = showing_.step();
     if (!out.played) return out;
     if (!showing_.is_null(0)) out.verdict = verdict_of(showing_.text(0));
-    out.grade = grade_of(showing_.text(1));
+    out.framed = !showing_.is_null(1);
+    if (out.framed) out.grade = grade_of(showing_.text(1));
     out.reason = showing_.text(2);
     out.realised = {static_cast<std::size_t>(showing_.integer(3)), showing_.real(4), showing_.real(5),
                     showing_.real(6)};

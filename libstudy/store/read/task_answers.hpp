@@ -26,6 +26,9 @@ struct TaskShowing {
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
   bool played = false;             ///< true: the stimulus was shown to its end; false: it has no timing
   std::optional<Verdict> verdict;  ///< timing verdict; none: no schedule, and not cut for overrunning
+  /// False: no frame was recorded, which happens to imported trials alone. There is no grade then, and
+  /// `realised` holds what the source states, or zeros.
+  bool framed = true;
   TimingGrade grade = TimingGrade::CpuSubmit;
   std::string reason;  ///< why the timing verdict is not pass
   stats::FpsMoments realised;
@@ -35,6 +38,9 @@ struct TaskShowing {
   /// frames. None: not measured, or the method has no such value.
   std::optional<double> active_fraction, tau_fps;
   int cell = 0;  ///< index into Design::cells
+
+  /// True if the mean and SD of the frame rate that was shown are known.
+  bool has_rates() const { return framed || realised.mean > 0; }
 };
 
 /// A question about a trial, with its answer if there is one. The score is on the question's scale; of a
@@ -83,7 +89,9 @@ struct TaskSession {
   std::string station, display;
   std::vector<TaskTrial> trials;  ///< by position
   std::vector<CatchAnswer> catches;
-  std::string first_answer_utc;  ///< time of the session's first answer, by the station's clock; empty: none
+  /// Time of the session's first answer, by the station's clock; of an imported session the time that the
+  /// source states, or that of the session's start; empty: none.
+  std::string first_answer_utc;
   /// Vertical field of view of the camera, and vertical visual angle of the picture at the eye: "camera 75
   /// degrees, eye 27.4 degrees, ratio 0.37". Several pairs of angles are joined by "; ". "not known":
   /// recorded by an earlier version. Empty: nothing was drawn.
@@ -102,6 +110,9 @@ struct TaskSession {
   /// known.
   std::string not_before_utc = {};
   std::string uid = {};  ///< random identifier of the session, equal in all copies of the database
+  /// Program that recorded the session elsewhere, and the SHA-256 of the file of its answers; empty: not
+  /// imported.
+  std::string imported_from = {}, source_sha256 = {};
 };
 
 /// A protocol with all its sessions, ordered by participant and visit.

@@ -123,14 +123,14 @@ CREATE TABLE chore (
 CREATE TABLE "frame" (
   presentation_id INTEGER NOT NULL REFERENCES presentation, -- presentation it belongs to
   frame_index INTEGER NOT NULL, -- from 0
-  content_step INTEGER NOT NULL, -- step of the fluid shown
-  simulation_time_s REAL NOT NULL, -- simulated time of that step, s
-  scheduled_ns INTEGER NOT NULL, -- planned onset after start_ns, ns
+  content_step INTEGER, -- step of the fluid shown; empty: imported
+  simulation_time_s REAL, -- simulated time of that step, s; empty: imported
+  scheduled_ns INTEGER NOT NULL, -- planned onset after start_ns, ns; imported: the onset after the first frame's, as there was no schedule
   submitted_ns INTEGER, -- handed over, after the planned onset, ns
   gpu_done_ns INTEGER, -- drawn, after the planned onset, ns
   predicted_display_ns INTEGER, -- predicted onset after the planned one, ns
   actual_display_ns INTEGER, -- reported onset after the planned one, ns
-  late INTEGER NOT NULL CHECK (late IN (0, 1)), -- 1: later than the protocol's bound
+  late INTEGER CHECK (late IN (0, 1)), -- 1: later than the protocol's bound; empty: imported, without a schedule
   particles TEXT, -- particles by level, finest first, separated by spaces; before schema 4 without the levels that held none; empty: not measured
   active_fraction REAL CHECK (active_fraction BETWEEN 0 AND 1), -- share of particles that the solver solved; empty: not measured, or a method that solves all
   tau_fps REAL, -- tau that the solver went by; empty: not measured, a method without tau, or no frame's time known to it yet, frames/s
@@ -191,7 +191,7 @@ CREATE TABLE "session" (
   viewing_distance_mm REAL CHECK (viewing_distance_mm > 0), -- eye to screen, mm
   ptpe TEXT, -- PTPE file in force, in full; empty: none
   started_utc TEXT, -- first trial began
-  ended_utc TEXT, station_number INTEGER /* number of the station among those of the study, from 1; it chose the slot and the seed; empty: the station had no number */, station_count INTEGER /* stations of the study, as this one was told; empty: likewise */, not_before_utc TEXT /* latest time that stood in the database when the session was planned: the session came after it, whatever its clock says; empty: nothing stood there, or recorded by an earlier version */, -- last unit done, or ended early
+  ended_utc TEXT, station_number INTEGER /* number of the station among those of the study, from 1; it chose the slot and the seed; empty: the station had no number */, station_count INTEGER /* stations of the study, as this one was told; empty: likewise */, not_before_utc TEXT /* latest time that stood in the database when the session was planned: the session came after it, whatever its clock says; empty: nothing stood there, or recorded by an earlier version */, imported_from TEXT /* program that recorded the session elsewhere, as the mapping of vip-study import names it; empty: vip-study recorded it */, source_sha256 TEXT /* SHA-256 of the file from which its answers were imported; empty: not imported */, -- last unit done, or ended early
   UNIQUE (participant, protocol_id, visit)
 ) STRICT;
 
@@ -202,24 +202,27 @@ CREATE TABLE "presentation" (
   interval INTEGER NOT NULL CHECK (interval IN (0, 1)), -- 0: first or only stimulus, 1: second of a pair
   cell INTEGER NOT NULL CHECK (cell >= 0), -- cell shown
   state TEXT NOT NULL CHECK (state IN ('running', 'interrupted', 'played')), -- played, or cut short
-  started_utc TEXT NOT NULL, -- when it began
-  start_ns INTEGER NOT NULL, -- the same on the session's clock, ns
+  started_utc TEXT, -- when it began; empty: imported, and the source does not tell
+  start_ns INTEGER, -- the same on the session's clock, ns; empty: imported, and the source does not tell
   end_ns INTEGER, -- end of the last frame on the session's clock, ns
   verdict TEXT CHECK (verdict IN ('pass', 'degraded', 'fail')), -- timing verdict; empty: no schedule to judge by
-  grade TEXT CHECK (grade IN ('A', 'B', 'C', 'D')), -- evidence: A photodiode, B display, C compositor, D submit
+  grade TEXT CHECK (grade IN ('A', 'B', 'C', 'D')), -- evidence: A photodiode, B display, C compositor, D submit; empty: no frames were recorded
   reason TEXT, -- why it is not a pass
-  frames INTEGER, -- frames shown
-  mean_fps REAL, -- realised harmonic mean, frames/s
+  frames INTEGER, -- frames shown; empty: not recorded
+  mean_fps REAL, -- realised harmonic mean, frames/s; of an import without frames: as its source states it; empty: not recorded
   mean_arithmetic_fps REAL, -- realised arithmetic mean, frames/s
   sd_fps REAL, -- realised population standard deviation, frames/s
   p95_ms REAL, -- 95th percentile of the intervals, ms
   longest_ms REAL, -- longest interval, ms
   shortest_ms REAL, -- shortest interval, ms
   lag1 REAL, -- autocorrelation of the frame rate at lag 1
-  late_frames INTEGER, -- frames beyond the protocol's bound
+  late_frames INTEGER, -- frames beyond the protocol's bound; empty: not recorded, or imported, without a schedule
   worst_late_ms REAL, -- largest lateness, ms
   framing_id INTEGER REFERENCES framing, -- how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
-  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */, hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: an earlier version, which did not write it */, animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */, -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
+  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
+  p99_ms REAL, -- 99th percentile of the intervals, ms; empty: not recorded, or an earlier version, which did not write it
+  hitches INTEGER, -- intervals longer than 1.5 times the median interval; empty: as for p99_ms
+  animation_error_ms REAL, -- mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, imported, or an earlier version
   UNIQUE (trial_id, attempt, interval)
 ) STRICT;
 
@@ -230,8 +233,8 @@ CREATE TABLE "response" (
   question_id INTEGER NOT NULL REFERENCES question, -- question answered
   score INTEGER, -- answer on the question's scale; empty: left out, or words
   words TEXT, -- free words; empty: none
-  response_time_s REAL NOT NULL CHECK (response_time_s >= 0), -- from question to answer, s
-  answered_utc TEXT NOT NULL, -- when
+  response_time_s REAL CHECK (response_time_s >= 0), -- from question to answer, s; empty: imported, and the source does not tell
+  answered_utc TEXT, -- when; empty: imported, and the source does not tell
   input TEXT CHECK (input IN ('keyboard', 'mouse', 'gamepad', 'ray', 'stick', 'dwell', 'observer')), -- what the answer was given with, of one left empty the confirmation: ray: a hand's ray and select; stick: a controller's thumbstick; dwell: by looking at it for a while; observer: a simulated participant; empty: not known, or an earlier version, which did not write it
   UNIQUE (unit_id, question_id, attempt)
 ) STRICT;

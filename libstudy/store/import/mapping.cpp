@@ -1,0 +1,158 @@
+#include "libstudy/store/import/mapping.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/nearest.hpp"
+#include "stats/base/pattern.hpp"
+#include "stats/base/text.hpp"
+#include "stats/base/toml.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using base::TomlTable;
+
+namespace {
+
+constexpr std::size_t most_mapping_bytes = 1 << 20;
+constexpr std::size_t most_tool_bytes = 60;
+
+constexpr std::array column_keys{
+    "person",      "visit",    "order",   "mean_fps",       "sd_fps",
+    "scene",       "method",   "n_star",  "effects",        "observer",
+    "test_data",   "answered", "started", "shown_mean_fps", "shown_mean_arithmetic_fps",
+    "shown_sd_fps"};
+
+/// Names of a column of times: `key`_s or `key`_ms.
+TimeColumn time_column(const TomlTable& table, const std::string& key) {
+  const std::string s = table.string_or(key + "_s", ""), ms = table.string_or(key + "_ms", "");
+  if (!s.empty() && !ms.empty())
+    table.fail(key + "_ms", "is given beside " + key + "_s", "keep the one whose unit the column has");
+  return ms.empty() ? TimeColumn{s, 1} : TimeColumn{ms, 1e-3};
+}
+
+std::vector<RowCondition> conditions(const TomlTable& table, const std::string& key) {
+  std::vector<RowCondition> out;
+  for (const TomlTable& one : table.tables(key)) {
+    RowCondition condition{one.string("column"), {}};
+    if (one.has("is")) {
+      if (one.is_text("is"))
+        condition.is = {one.string("is")};
+      else
+        condition.is = one.strings("is");
+      if (condition.is.empty())
+        one.fail("is", "is an empty list, so no row would be read",
+                 "list texts, or remove the key to read all rows in which the column is not empty");
+    }
+    out.push_back(std::move(condition));
+  }
+  return out;
+}
+
+AnswerColumn answer_column(const TomlTable& table) {
+  AnswerColumn out;
+  out.question = table.string("question");
+  out.column = table.string("column");
+  out.key = table.string_or("key", "");
+  out.add = static_cast<int>(table.integer_or("add", 0, {-1000, 1000}));
+  if (table.has("scores")) {
+    const TomlTable scores = table.table("scores");
+    for (const std::string& text : scores.keys())
+      out.scores[text] = static_cast<int>(scores.integer(text, {-1e6, 1e6}));
+    if (out.scores.empty()) table.fail("scores", "names no text", "write TEXT = SCORE, or remove the table");
+    if (out.add != 0) table.fail("add", "is given beside scores", "write the final scores");
+  }
+  out.when = conditions(table, "when");
+  const TimeColumn time = time_column(table, "response_time");
+  out.response_time_column = time.column;
+  out.response_time_unit_s = time.unit_s;
+  return out;
+}
+
+void read_columns(const TomlTable& root, ImportMapping& out) {
+  if (!root.has("columns"))
+    root.fail("", "has no table [columns]", "add [columns] with order = \"COLUMN\" and those of the setting");
+  const TomlTable columns = root.table("columns");
+  for (const char* key : column_keys)
+    if (columns.has(key)) out.columns[key] = columns.string(key);
+  out.onset = time_column(columns, "onset");
+  if (columns.has("factors")) {
+    const TomlTable factors = columns.table("factors");
+    for (const std::string& name : factors.keys()) out.factors[name] = factors.string(name);
+  }
+  if (out.only_person.empty() && !out.columns.contains("person"))
+    columns.fail("person",
+                 "is missing: without a column of people, the trials of several people would count as one's",
+                 "name the column with the participant codes, or write only_person = \"P01\" at the top of "
+                 "the mapping if all rows are of one person");
+  if (!out.only_person.empty() && out.columns.contains("person"))
+    columns.fail("person", "is given beside only_person", "keep one of the two");
+  if (out.rows_in_order == out.columns.contains("order"))
+    columns.fail(
+        "order", out.rows_in_order ? "is given beside rows_in_order" : "is missing",
+        "name the column that numbers the trials of a visit, or write rows_in_order = true at the top "
+        "of the mapping if each row is one trial and the rows are in the order of the trials");
+}
+
+void read_frames(const TomlTable& root, ImportMapping& out) {
+  if (!root.has("frames")) return;
+  const TomlTable frames = root.table("frames");
+  out.frames_file = frames.string("file");
+  out.frames_column = frames.string_or("column", "");
+  out.frames_may_lack = frames.boolean_or("may_lack", false);
+}
+
+}  // namespace
+
+fs::path find_mapping(const fs::path& named) {
+  std::error_code ignored;
+  if (fs::exists(named, ignored)) return named;
+  const fs::path folder = base::resource("protocols/import");
+  if (!named.has_parent_path()) {
+    const fs::path shipped = folder / (named.string() + (named.extension() == ".toml" ? "" : ".toml"));
+    if (fs::exists(shipped, ignored)) return shipped;
+  }
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  throw base::Error(named.string(), "is neither a mapping file nor the name of one that comes with vip-study",
+                    base::use_one_of(named.string(), names));
+}
+
+ImportMapping read_mapping(const fs::path& file) {
+  ImportMapping out;
+  out.text = base::read_file(file, most_mapping_bytes);
+  out.sha256 = base::sha256_hex(out.text);
+  const TomlTable root = base::parse_toml(out.text, file.string());
+  root.integer("format", {1, 1});
+  out.tool = root.string("tool");
+  if (out.tool.empty() || out.tool.size() > most_tool_bytes || !base::is_plain_line(out.tool))
+    root.fail("tool", "is no name of a program", "write 1 to 60 bytes of text, such as \"PsychoPy\"");
+  out.files = root.string_or("files", "");
+  if (root.has("sharing")) out.sharing = root.choice("sharing", {"allowed", "refused"});
+  out.consent = root.string_or("consent", "");
+  if (root.has("incomplete")) out.incomplete = root.choice("incomplete", {"stopped", "dropped out"});
+  out.utc_offset = root.string_or("utc_offset", "");
+  static const base::Pattern offset("[+-][01][0-9]:[0-5][0-9]");
+  if (!out.utc_offset.empty() && !offset.match(out.utc_offset))
+    root.fail("utc_offset", "is no offset from UTC", "write it as \"+02:00\" or \"-05:00\"");
+  if (root.has("missing")) out.missing = root.strings("missing");
+  if (root.has("not_asked")) out.not_asked = root.strings("not_asked");
+  out.rows_in_order = root.boolean_or("rows_in_order", false);
+  out.test_data = root.boolean_or("test_data", false);
+  out.only_person = root.string_or("only_person", "");
+  out.rows = conditions(root, "row");
+  read_columns(root, out);
+  for (const TomlTable& one : root.tables("answer")) out.answers.push_back(answer_column(one));
+  if (out.answers.empty())
+    root.fail("", "has no table [[answer]]", "add [[answer]] with question = \"ID\" and column = \"COLUMN\"");
+  read_frames(root, out);
+  root.finish();
+  return out;
+}
+
+}  // namespace study

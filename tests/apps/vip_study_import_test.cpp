@@ -1,0 +1,168 @@
+/// vip-study import as a user runs it, on studies in the layouts of PsychoPy, jsPsych and UXF.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/libstudy/study_fixture.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string sources = VIP_TEST_DIR "/libstudy/fixtures/import/";
+const std::string terms = " --sharing refused --consent 'forms in the lab'";
+
+apps::test::Ended vip_study(const std::string& arguments) {
+  return apps::test::run_shell(VIP_BIN_DIR "/vip-study " + arguments);
+}
+apps::test::Ended vip_stats(const std::string& arguments) {
+  return apps::test::run_shell(VIP_BIN_DIR "/vip-stats " + arguments);
+}
+
+apps::test::Ended import(const std::string& source, const std::string& mapping, const fs::path& database,
+                         const std::string& more = terms) {
+  return vip_study("import " + source + " --protocol ptpe_pilot --mapping " + mapping + " --db " +
+                   database.string() + more);
+}
+
+base::Json fit_of(const fs::path& database, const fs::path& json) {
+  const auto fit = vip_stats("fit-ptpe " + database.string() + " --resamples 200 --json " + json.string());
+  EXPECT_EQ(fit.exit_code, 0) << fit.out;
+  return base::Json::parse(base::read_file(json, 1 << 24));
+}
+
+}  // namespace
+
+TEST(VipStudyImportE2e, StudiesOfThreeToolsAreFittedAndReported) {
+  const study::test::TemporaryFolder folder;
+  const std::string hashes[] = {"psychopy/P01_ptpe_2026-03-02_14h05.12.345.csv", "jspsych/data.csv",
+                                "uxf/ptpe/P01/S001/trial_results.csv"};
+  const std::string tools[] = {"PsychoPy", "jsPsych", "UXF"};
+  for (std::size_t i = 0; const std::string name : {"psychopy", "jspsych", "uxf"}) {
+    SCOPED_TRACE(name);
+    const fs::path database = folder / (name + ".db");
+    const auto done = import(sources + name, name, database);
+    ASSERT_EQ(done.exit_code, 0) << done.out;
+    EXPECT_THAT(done.out, HasSubstr("6 sessions of 6 people from " + tools[i] + ", 126 trials, 126 answers"));
+    EXPECT_THAT(done.out, HasSubstr("frames of 0 trials; of 0 only the rates that the source states; of 126 not"));
+
+    // The scores were made with a = 24, b = 0.02.
+    const base::Json fit = fit_of(database, folder / (name + ".json"));
+    EXPECT_NEAR(fit.at("a").get<double>(), 24, 2.5);
+    EXPECT_NEAR(fit.at("b").get<double>(), 0.02, 0.008);
+    EXPECT_EQ(fit.at("n_ratings").get<int>(), 126);
+    EXPECT_EQ(fit.at("used").at("by_verdict").dump(), R"({"not recorded":126})");
+    EXPECT_TRUE(fit.at("used").at("by_grade").empty());
+    EXPECT_THAT(fit.at("flags").dump(), HasSubstr("timing_not_recorded"));
+    EXPECT_THAT(fit.at("imported").dump(), HasSubstr(base::sha256_of_file(sources + hashes[i])));
+
+    const auto status = vip_study("status --db " + database.string());
+    EXPECT_THAT(status.out, HasSubstr("imported from " + tools[i] + ", SHA-256 of the source " +
+                                      base::sha256_of_file(sources + hashes[i])));
+    EXPECT_THAT(status.out, HasSubstr("timing of 21 trials not recorded"));
+    EXPECT_THAT(status.out, HasSubstr("data not shared"));
+
+    const fs::path page = folder / (name + ".html");
+    const auto report = vip_stats("report " + database.string() + " --html " + page.string() + " --json " +
+                                  (folder / "results.json").string());
+    ASSERT_EQ(report.exit_code, 0) << report.out;
+    const std::string text = base::read_file(page, 1 << 26);
+    EXPECT_THAT(text, HasSubstr("were recorded elsewhere, by " + tools[i]));
+    EXPECT_THAT(text, HasSubstr("no frame was recorded: when they were shown is not known"));
+    for (const base::Json& cell : base::Json::parse(base::read_file(folder / "results.json", 1 << 26)).at("timing")) {
+      EXPECT_EQ(cell.at("pass").get<int>(), 0);
+      EXPECT_EQ(cell.at("not_recorded").get<int>(), cell.at("showings").get<int>());
+      EXPECT_TRUE(cell.at("realised_mean_fps").is_null() && cell.at("late_frames").is_null());
+    }
+    ++i;
+  }
+}
+
+TEST(VipStudyImportE2e, TheWayBackGivesTheSameFit) {
+  const study::test::TemporaryFolder folder;
+  const auto run = vip_study("run ptpe_pilot --db " + (folder / "ours.db").string() +
+                             " --observer ptpe:a=24,b=0.02 --participants 5 --seed 3");
+  ASSERT_EQ(run.exit_code, 0) << run.out;
+  ASSERT_EQ(vip_study("export --db " + (folder / "ours.db").string() + " --csv " + (folder / "csv").string()).exit_code,
+            0);
+  const auto back = import((folder / "csv").string(), "vip_study", folder / "back.db");
+  ASSERT_EQ(back.exit_code, 0) << back.out;
+  EXPECT_THAT(back.out, HasSubstr("of 105 only the rates that the source states; of 0 not recorded"));
+  const base::Json ours = fit_of(folder / "ours.db", folder / "ours.json");
+  const base::Json theirs = fit_of(folder / "back.db", folder / "back.json");
+  for (const char* key : {"status", "level", "a", "b", "a_ci", "b_ci", "a_se", "b_se", "n_participants",
+                          "n_ratings", "n_settings", "doubts", "relative_half_width", "level5", "estimators",
+                          "form", "raters", "lack_of_fit", "bands", "means", "cells", "protocol", "question",
+                          "simulated_participants"}) {
+    ASSERT_TRUE(ours.contains(key)) << key;
+    EXPECT_EQ(ours.at(key).dump(), theirs.at(key).dump()) << key;
+  }
+  EXPECT_EQ(theirs.at("used").at("by_verdict").dump(), R"({"not recorded":105})");
+  EXPECT_THAT(theirs.at("flags").dump(), HasSubstr("timing_stated"));
+  EXPECT_THAT(theirs.at("flags").dump(), HasSubstr("5 participants simulated"));
+}
+
+TEST(VipStudyImportE2e, ImportsOnceAndAllOrNothing) {
+  const study::test::TemporaryFolder folder;
+  const fs::path database = folder / "s.db";
+  const auto silent = import(sources + "jspsych", "jspsych", database, "");
+  EXPECT_EQ(silent.exit_code, 1);
+  EXPECT_THAT(silent.out, HasSubstr("does not say whether these data may stand in public exports"));
+  const auto unsaid = import(sources + "jspsych", "jspsych", database, " --sharing refused");
+  EXPECT_EQ(unsaid.exit_code, 1);
+  EXPECT_THAT(unsaid.out, HasSubstr("does not say where the participants' consent is recorded"));
+
+  std::string text = base::read_file(sources + "jspsych/data.csv", 1 << 20);
+  const auto last = text.rfind("\"50\",\"");
+  std::ofstream(folder / "wrong.csv", std::ios::binary) << text.replace(last, 4, "\"51\"");
+  const auto wrong = import((folder / "wrong.csv").string(), "jspsych", database);
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.out, testing::ContainsRegex("wrong.csv:[0-9]+: mean_fps \"51\".* is no cell of protocol"));
+  EXPECT_FALSE(fs::exists(database));
+
+  ASSERT_EQ(import(sources + "jspsych", "jspsych", database).exit_code, 0);
+  const auto again = import(sources + "jspsych", "jspsych", database);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.out, HasSubstr("holds the source of participant P01 already"));
+  const auto other = import(sources + "uxf", "uxf", database);
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.out, HasSubstr("whether it is the same person is not known"));
+  EXPECT_THAT(vip_study("status --db " + database.string()).out, HasSubstr("6 sessions, 126 of 126"));
+
+  // Merged, the six people of either study stay apart; a second copy of one study adds nobody.
+  ASSERT_EQ(import(sources + "uxf", "uxf", folder / "uxf.db").exit_code, 0);
+  const auto merged = vip_study("merge " + database.string() + " " + (folder / "uxf.db").string() + " --into " +
+                                (folder / "all.db").string());
+  EXPECT_EQ(merged.exit_code, 0) << merged.out;
+  EXPECT_THAT(merged.out, HasSubstr("12 sessions"));
+}
+
+TEST(VipStudyImportE2e, PublicExportsHoldOnlyWhatTheMappingAllows) {
+  const study::test::TemporaryFolder folder;
+  ASSERT_EQ(import(sources + "psychopy", "psychopy", folder / "kept.db").exit_code, 0);
+  const auto kept = vip_study("export --db " + (folder / "kept.db").string() + " --bids " + (folder / "b").string());
+  EXPECT_EQ(kept.exit_code, 0) << kept.out;
+  EXPECT_FALSE(fs::exists(folder / "b/sub-P01"));
+
+  ASSERT_EQ(import(sources + "psychopy", "psychopy", folder / "open.db", " --sharing allowed --consent forms").exit_code,
+            0);
+  const auto open = vip_study("export --db " + (folder / "open.db").string() + " --bids " + (folder / "c").string() +
+                              " --psych-ds " + (folder / "d").string());
+  EXPECT_EQ(open.exit_code, 0) << open.out;
+  const std::string sessions = base::read_file(folder / "c/sub-P01/sub-P01_sessions.tsv", 1 << 20);
+  EXPECT_THAT(sessions, HasSubstr("PsychoPy\t" + base::sha256_of_file(
+                                                     sources + "psychopy/P01_ptpe_2026-03-02_14h05.12.345.csv")));
+  EXPECT_THAT(base::read_file(folder / "c/README.md", 1 << 20),
+              HasSubstr("6 sessions were recorded by PsychoPy and imported."));
+  EXPECT_THAT(base::read_file(folder / "d/dataset_description.json", 1 << 24),
+              HasSubstr("6 sessions were recorded by PsychoPy and imported."));
+}
