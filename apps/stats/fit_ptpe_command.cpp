@@ -159,6 +159,7 @@ void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
                     {"form_rejected", command.other_form(fit)},
                     {"version", base::version()}};
   if (!command.lacking.empty()) record["incomplete"] = command.lacking;
+  if (!fit.data.imported.empty()) record["imported"] = fit.data.imported;
   study::append_calibration(command.out, text, record);
   base::write_file_atomically(command.out, text);
 }

@@ -60,8 +60,9 @@ study::ImportTerms terms_of(const ImportCommand& command, const study::ImportMap
 void print_sources(const study::ReadImport& read) {
   std::set<std::string> left;
   for (const study::ReadSource& source : read.sources) {
-    std::printf("%s: %zu of %zu rows are trials, SHA-256 %s\n", source.file.string().c_str(), source.used,
-                source.rows, source.sha256.c_str());
+    std::printf("%s: %zu of %zu rows are trials, SHA-256 %s\n",
+                base::shortened(source.file.string(), 300).c_str(), source.used, source.rows,
+                source.sha256.c_str());
     for (const std::string& name : source.left_columns) left.insert(base::shortened(name, 40));
   }
   if (!left.empty())
@@ -92,7 +93,7 @@ void print_sessions(const study::ReadImport& read, const study::ImportTerms& ter
   std::printf("public exports: %s\n", terms.sharing ? "allowed" : "refused");
 }
 
-void import(const ImportCommand& command) {
+void import_study(const ImportCommand& command) {
   const study::ImportMapping mapping = study::read_mapping(study::find_mapping(command.mapping));
   const study::ImportTerms terms = terms_of(command, mapping);
   study::Protocol protocol = study::read_protocol(study::find_protocol(command.protocol));
@@ -137,7 +138,7 @@ void add_import_command(CLI::App& app) {
                  "Length of each trial, s, if it differed from the protocol's; marks the data as test data")
       ->check(number_in(0.1, 3600));
   sub.footer("Nothing is stored unless every row fits the protocol. docs/data.md describes the mapping.");
-  sub.callback([command] { import(*command); });
+  sub.callback([command] { import_study(*command); });
 }
 
 }  // namespace apps

@@ -9,6 +9,7 @@
 #include "libsim/setting/setting_file.hpp"
 #include "libstudy/analysis/trial_record.hpp"
 #include "stats/analysis/mixed_scores.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/utc.hpp"
 
 namespace study {
@@ -274,8 +275,8 @@ class Collector {
       shown.mean = shown.mean_arithmetic = nominal.mean;
       shown.sd = nominal.sd;
       ++data_.asked_rates;
-    } else if (!trial.first.framed) {
-      ++data_.stated_rates;
+    } else {
+      ++(trial.first.framed ? data_.recorded_rates : data_.stated_rates);
     }
     data_.ratings.push_back({person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic,
                              shown.sd, score, trial.position});
@@ -324,6 +325,14 @@ std::string TaskData::gaze_problem() const {
   if (sources.empty()) return {};
   return "gaze was not tracked in every session (" + sources + " of " + std::to_string(sessions) +
          "), and what the methods refine depends on it";
+}
+
+std::string TaskData::rates_words() const {
+  std::vector<std::string> kinds;
+  if (recorded_rates > 0) kinds.emplace_back("realised");
+  if (stated_rates > 0) kinds.emplace_back("stated");
+  if (asked_rates > 0) kinds.emplace_back("asked");
+  return base::joined(kinds);
 }
 
 std::string TaskData::imported_words() const {

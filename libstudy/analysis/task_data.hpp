@@ -87,9 +87,12 @@ struct TaskData {
       mixed_pictures;  ///< number of analysed sessions with each value, such as gaze "tracked"
   /// Imported sessions with analysed answers: by program, the SHA-256 of the source of each session.
   std::map<std::string, std::vector<std::string>> imported;
-  /// Pilot: analysed ratings whose frame rate is the one that the source states, and the one that was asked
-  /// for, as no frames were recorded.
-  int stated_rates = 0, asked_rates = 0;
+  /// Pilot: analysed ratings by their frame rate: of recorded frames; without frames the one that the source
+  /// states, or else the one that was asked for.
+  int recorded_rates = 0, stated_rates = 0, asked_rates = 0;
+  /// What the frame rates of the ratings are: "realised", "stated" (by the source), "asked" (for), or
+  /// several, separated by ", ".
+  std::string rates_words() const;
   std::string first_answer_utc;  ///< earliest first answer of the sessions without doubtful times, in UTC;
                                  ///< empty: none
   std::vector<DoubtfulTime> doubtful_times;

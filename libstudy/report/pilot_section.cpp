@@ -46,13 +46,18 @@ void estimate_row(Table& table, const std::string& name, const Field& e) {
   table.row({name, a_with_interval(e), b_with_interval(e)});
 }
 
+/// The frame rates at which the ratings were analysed, in words.
+std::string rates_of(const Field& pilot) {
+  return pilot["rates"].exists() ? words(pilot["rates"]) : "realised";
+}
+
 std::string model_of(const Field& pilot) {
   if (pilot["estimator"].words().empty()) return "";
   const std::string mu = typeset("mu"), delta = typeset("delta"), u = "<i>u</i>";
   return paragraph(
              "Model of the direct estimate, least squares of all ratings with a participant's ratings of one "
-             "setting averaged, at the realised " +
-             mu + " and " + delta + ":") +
+             "setting averaged, at the " +
+             rates_of(pilot) + " " + mu + " and " + delta + ":") +
          "<p class=\"formula\">E[score] = level + <i>k</i>\xE2\x80\x89" + u + " + <i>m</i>\xE2\x80\x89" + u +
          "\xE2\x80\x89" + delta + " + <i>q</i>\xE2\x80\x89" + u + "\xC2\xB2, with " + u +
          " = log\xE2\x80\x89" + mu +
@@ -128,9 +133,12 @@ std::string raters(const Field& pilot) {
 }
 
 std::string cells(const Field& pilot) {
+  const bool recorded = !pilot["rates"].exists();
+  const std::string mean = recorded ? "Realised mean" : "Mean: " + rates_of(pilot),
+                    sd = recorded ? "Realised SD" : "SD: " + rates_of(pilot);
   Table table("Scores of the settings, over participants",
-              {"Setting: mean, frames/s", "SD, frames/s", "Realised mean", "Realised SD", "<i>n</i>",
-               "Mean score", "<i>SD</i>", "CI (<i>t</i>)"});
+              {"Setting: mean, frames/s", "SD, frames/s", mean, sd, "<i>n</i>", "Mean score", "<i>SD</i>",
+               "CI (<i>t</i>)"});
   for (const Field& c : pilot["cells"].entries())
     table.row({fixed(c["fps_mean"], 0), fixed(c["fps_sd"], 0), fixed(c["realised_mean"], 2),
                fixed(c["realised_sd"], 2), count(c["n"]), fixed(c["score"], 2), fixed(c["sd"], 2),

@@ -9,6 +9,7 @@
 
 #include "libstudy/store/read/status.hpp"
 #include "libstudy/store/read/task_answers.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/store.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -61,8 +62,9 @@ class Import : public testing::Test {
 };
 
 TEST_F(Import, TrialsStandInTheOrderOfTheirNumbers) {
-  const ReadImport all = read(head + columns, "who,n,mean,sd,score\nP02,7,20,0,5\nP01,2,20,0,6\nP01,1,10,0,3\n"
-                                              "P02,3,10,0,2\n");
+  const ReadImport all = read(head + columns,
+                              "who,n,mean,sd,score\nP02,7,20,0,5\nP01,2,20,0,6\nP01,1,10,0,3\n"
+                              "P02,3,10,0,2\n");
   ASSERT_EQ(all.sessions.size(), 2u);
   EXPECT_EQ(all.sessions[0].participant, "P01");
   ASSERT_EQ(all.sessions[1].trials.size(), 2u);
@@ -73,14 +75,16 @@ TEST_F(Import, TrialsStandInTheOrderOfTheirNumbers) {
 }
 
 TEST_F(Import, ReadsQuotesSeparatorsAndMarks) {
-  const ReadImport all = read(head + "missing = [\"null\"]\n[[row]]\ncolumn = \"kind\"\nis = [\"rate\"]\n"
-                                     "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
-                                     "[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"a\"\nkey = \"q\"\nadd = 1\n"
-                                     "response_time_ms = \"rt\"\n",
-                              "\xEF\xBB\xBFwho;n;mean;sd;a;rt;kind;\r\n"
-                              "P01;1;10,0;0;\"{\"\"q\"\":2}\";\"1500,5\";rate;\r\n"
-                              "P01;2;;;\"two\nlines; here\";;text;\r\n"
-                              "P01;3;20;0;\"{\"\"q\"\":null}\";;rate;\r\n\r\n");
+  const ReadImport all =
+      read(head +
+               "missing = [\"null\"]\n[[row]]\ncolumn = \"kind\"\nis = [\"rate\"]\n"
+               "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
+               "[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"a\"\nkey = \"q\"\nadd = 1\n"
+               "response_time_ms = \"rt\"\n",
+           "\xEF\xBB\xBFwho;n;mean;sd;a;rt;kind;\r\n"
+           "P01;1;10,0;0;\"{\"\"q\"\":2}\";\"1500,5\";rate;\r\n"
+           "P01;2;;;\"two\nlines; here\";;text;\r\n"
+           "P01;3;20;0;\"{\"\"q\"\":null}\";;rate;\r\n\r\n");
   ASSERT_EQ(all.sessions.at(0).trials.size(), 2u);
   const ImportedAnswer answer = all.sessions[0].trials[0].answers.at(0);
   EXPECT_EQ(answer.score, 3);
@@ -91,8 +95,9 @@ TEST_F(Import, ReadsQuotesSeparatorsAndMarks) {
 }
 
 TEST_F(Import, RefusesWhatItWouldHaveToGuess) {
-  const std::string people = "[columns]\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
-                             "[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"score\"\n";
+  const std::string people =
+      "[columns]\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
+      "[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"score\"\n";
   expect_refusal(head + people, table, "without a column of people");
   EXPECT_EQ(read(head + "only_person = \"P09\"\n" + people, table).sessions.at(0).participant, "P09");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,3\n", "has 1 of the 2 trials of P01");
@@ -105,7 +110,8 @@ TEST_F(Import, RefusesWhatItWouldHaveToGuess) {
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,3\nP01,1,10,0,5\n", "is a second answer");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,15,0,3\n", "mean \"15\", sd \"0\" is no cell");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,nan,0,3\n", "column mean: \"nan\" is no number");
-  expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,8\n", "t.csv:2, column score: \"8\" is no answer");
+  expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,8\n",
+                 "t.csv:2, column score: \"8\" is no answer");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,3.5\n", "\"3.5\" is no answer");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0,\n", "\"\" is no answer");
   expect_refusal(head + columns, "who,n,mean,sd,score\nAnna B.,1,10,0,3\n", "is not a participant code");
@@ -116,30 +122,40 @@ TEST_F(Import, RefusesWhatItWouldHaveToGuess) {
   expect_refusal(head + columns, "", "t.csv:1: is empty");
   expect_refusal(head + columns, "who,n,mean,sd,score\n", "has no row that the mapping takes");
   expect_refusal(head + columns + "colour = \"red\"\n", table, "map.toml:");
-  expect_refusal(head + "[columns]\nperson = \"who\"\norder = \"n\"\n[[answer]]\nquestion = \"satisfaction\"\n"
-                        "column = \"score\"\n",
+  expect_refusal(head +
+                     "[columns]\nperson = \"who\"\norder = \"n\"\n[[answer]]\nquestion = \"satisfaction\"\n"
+                     "column = \"score\"\n",
                  table, "so 2 cells of protocol ptpe_pilot 2.0 fit");
-  expect_refusal(head + "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\n[[answer]]\nquestion = "
-                        "\"joy\"\ncolumn = \"score\"\n",
-                 table, "question 'joy' of the mapping");
+  expect_refusal(
+      head +
+          "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\n[[answer]]\nquestion = "
+          "\"joy\"\ncolumn = \"score\"\n",
+      table, "question 'joy' of the mapping");
 }
 
 TEST_F(Import, OneVisitComesFromOneFile) {
   const ImportMapping mapping = read_mapping(write("map.toml", head + columns));
   const fs::path one = write("a/t.csv", table), other = write("b/t.csv", table + "\n");
-  EXPECT_THAT([&] { read_import(two_settings(), mapping, {one, other}); },
-              ThrowsMessage<base::Error>(HasSubstr("is of visit 1 of P01, which")));
+  EXPECT_THAT(
+      [&] {
+        read_import(two_settings(), mapping, {one, other});
+      },
+      ThrowsMessage<base::Error>(HasSubstr("is of visit 1 of P01, which")));
   write("b/t.csv", table);
-  EXPECT_THAT([&] { read_import(two_settings(), mapping, {one, other}); },
-              ThrowsMessage<base::Error>(HasSubstr("holds the same bytes as")));
+  EXPECT_THAT(
+      [&] {
+        read_import(two_settings(), mapping, {one, other});
+      },
+      ThrowsMessage<base::Error>(HasSubstr("holds the same bytes as")));
   EXPECT_THAT([&] { find_sources({folder_ / "a"}, mapping); },
               ThrowsMessage<base::Error>(HasSubstr("does not name the tables")));
 }
 
 TEST_F(Import, TimesOfDayBecomeUtc) {
   const auto utc = [&](const std::string& time, const std::string& offset) {
-    return read(head + offset + "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
-                                "answered = \"at\"\n[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"score\"\n",
+    return read(head + offset +
+                    "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
+                    "answered = \"at\"\n[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"score\"\n",
                 "who,n,mean,sd,score,at\nP01,1,10,0,3," + time + "\nP01,2,20,0,3," + time + "\n")
         .sessions.at(0)
         .trials.at(0)
@@ -150,7 +166,8 @@ TEST_F(Import, TimesOfDayBecomeUtc) {
   EXPECT_EQ(utc("2026-01-31 13:00:00Z", ""), "2026-01-31T13:00:00Z");
   EXPECT_THAT([&] { utc("2026-01-31 13:00:00", ""); },
               ThrowsMessage<base::Error>(HasSubstr("has no offset from UTC")));
-  EXPECT_THAT([&] { utc("2999-01-31 13:00:00Z", ""); }, ThrowsMessage<base::Error>(HasSubstr("in the future")));
+  EXPECT_THAT([&] { utc("2999-01-31 13:00:00Z", ""); },
+              ThrowsMessage<base::Error>(HasSubstr("in the future")));
   EXPECT_THAT([&] { utc("yesterday", ""); }, ThrowsMessage<base::Error>(HasSubstr("is no time of day")));
 }
 
@@ -193,11 +210,31 @@ TEST_F(Import, FramesGiveAVerdictAndTheirAbsenceGivesNone) {
   expect_refusal(mapping, table, "log_2.csv");
 }
 
+TEST_F(Import, SurvivesADamagedDatabase) {
+  const ReadImport all = read(head + columns, table);
+  Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions);
+  const auto marks = [](const fs::path& path) {
+    return sqlite::Connection(path, sqlite::Open::Read)
+        .text(
+            "SELECT imported_from || source_sha256 || (SELECT group_concat(score) FROM response) || (SELECT "
+            "count(*) FROM response WHERE answered_utc IS NULL AND response_time_s IS NULL) FROM session");
+  };
+  const std::string before = marks(folder_ / "s.db");
+  EXPECT_THAT(before, HasSubstr("3,52"));
+  std::string bytes = test::bytes_of(folder_ / "s.db");
+  std::fill_n(bytes.begin(), 100, '\0');  // without its header the file is read page by page
+  base::write_file_atomically(folder_ / "s.db", bytes);
+  fs::remove(folder_ / "s.db.answers.jsonl");
+  salvage(folder_ / "s.db", folder_ / "new.db");
+  EXPECT_EQ(marks(folder_ / "new.db"), before);
+}
+
 TEST_F(Import, IsAllOrNothing) {
   ReadImport all = read(head + columns, table + "P02,1,10,0,3\nP02,2,20,0,5\n");
   all.sessions[1].trials[1].cell = -1;  // SQLite refuses this cell
-  EXPECT_THROW(Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions),
-               std::exception);
+  EXPECT_THROW(
+      Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions),
+      std::exception);
   EXPECT_FALSE(fs::exists(folder_ / "s.db"));
 }
 
@@ -206,7 +243,8 @@ TEST_F(Import, APersonWhoWithdrewDoesNotComeBack) {
   Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions);
   withdraw(folder_ / "s.db", "P01");
   const std::vector<ImportedSession> again{all.sessions.at(0)};
-  EXPECT_THROW(Store(folder_ / "s.db", sqlite::Open::Write).add_import(two_settings(), terms(), again), base::Error);
+  EXPECT_THROW(Store(folder_ / "s.db", sqlite::Open::Write).add_import(two_settings(), terms(), again),
+               base::Error);
   // The same people of the same source have the same identities in any database.
   Store(folder_ / "t.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions);
   const auto identities = [&](const char* name, const char* column) {

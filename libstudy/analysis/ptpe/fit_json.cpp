@@ -13,10 +13,10 @@ namespace study {
 
 namespace {
 
-constexpr const char* estimator =
+constexpr const char* least_squares =
     "least squares of all ratings (a participant's mean of each setting): E[score] = level + k u + m u delta "
     "+ "
-    "q u^2, u = log mu - log a - b delta, at realised mu and delta";
+    "q u^2, u = log mu - log a - b delta, at ";
 constexpr const char* direct_interval =
     "jackknife over participants with Student's t, for a on the log scale";
 
@@ -128,7 +128,10 @@ Json fit_json(const PilotFit& fit) {
   for (const auto& flag : fit.flags) json["flags"].push_back({{"code", flag.code}, {"text", flag.text}});
   json["doubts"] = Json::array();
   for (const auto& doubt : fit.doubts) json["doubts"].push_back(doubt.code);
-  json["estimator"] = estimator;
+  const int unframed = fit.data.stated_rates + fit.data.asked_rates;
+  const std::string rates = unframed > 0 ? fit.data.rates_words() : "realised";
+  json["estimator"] = least_squares + rates + " mu and delta";
+  if (unframed > 0) json["rates"] = rates;
   json["interval"] = {{"method", interval_method(fit.main())}, {"confidence", fit.bootstrap.confidence}};
   json["bootstrap"] = {{"resamples", fit.bootstrap.resamples}, {"seed", fit.bootstrap.seed}};
   json["scale_min"] = fit.data.question.scale_min;

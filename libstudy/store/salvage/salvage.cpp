@@ -59,11 +59,20 @@ bool same(const Shape& a, const Shape& b) {
                     [](const auto& x, const auto& y) { return same(x, y); });
 }
 
+/// True if the upgrade of a schema keeps the values of a column. It keeps those of a column that lost its NOT
+/// NULL, but for the share of solved particles, which schemas before 4 made up.
+bool is_kept(const Shape& earlier, const Shape::Column& before, const Shape::Column& now) {
+  if (same(before, now)) return true;
+  return before.name == now.name && before.type == now.type && now.may_be_null &&
+         !(earlier.table == "frame" && before.name == "active_fraction");
+}
+
 EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size_t index) {
   EarlierShape out{shape, index, {}};
   for (const Shape::Column& column : now[index].columns) {
-    const auto found = std::find_if(shape.columns.begin(), shape.columns.end(),
-                                    [&](const Shape::Column& before) { return same(before, column); });
+    const auto found =
+        std::find_if(shape.columns.begin(), shape.columns.end(),
+                     [&](const Shape::Column& before) { return is_kept(shape, before, column); });
     out.source.emplace_back();
     if (found != shape.columns.end())
       out.source.back() = static_cast<std::size_t>(found - shape.columns.begin());
@@ -84,7 +93,7 @@ std::vector<Shape> shapes_before() {
 }
 
 /// The earlier shapes, from schema 2 on, that differ from the tables' current shapes `now`. A column is
-/// copied if its name, type and NOT NULL are unchanged. Every other current column becomes NULL.
+/// copied if the upgrade keeps its values (is_kept()). Every other current column becomes NULL.
 std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
   static const std::vector<Shape> before = shapes_before();
   std::vector<EarlierShape> out;
