@@ -188,7 +188,7 @@ Json session_columns() {
       {"station", described("where it was recorded")},
       {"gaze_source", described("tracked, head, mouse, fixed, fixation or none, as planned")},
       {"state", described("open, done, or how it ended early")},
-      {"imported_from", described("program that recorded the session elsewhere; n/a: vip-study recorded it")},
+      {"imported_from", described("program that recorded the session elsewhere; n/a: it was recorded here")},
       {"source_sha256", described("SHA-256 of the file from which its answers were imported")},
       {"setting_sha256", described(setting_sha256_meaning)}};
 }
