@@ -14,5 +14,6 @@ void add_report_command(CLI::App& app);
 void add_study_command(CLI::App& app);
 void add_preregister_command(CLI::App& app);
 void add_power_command(CLI::App& app);
+void add_scale_command(CLI::App& app);
 
 }  // namespace apps

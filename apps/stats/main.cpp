@@ -12,5 +12,6 @@ int main(int argc, char** argv) {
   apps::add_study_command(*app);
   apps::add_preregister_command(*app);
   apps::add_power_command(*app);
+  apps::add_scale_command(*app);
   return apps::run_program(*app, argc, argv);
 }
