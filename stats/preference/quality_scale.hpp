@@ -48,14 +48,15 @@ struct ScaleData {
 
 enum class ScalePrior {
   None,  ///< maximum likelihood; refused where a condition wins or loses every comparison with the others
-  /// Each q is normal about the mean of all, with a standard deviation of prior_sd_jod. Always finite.
+  /// Each q is normal about the mean of all, with a standard deviation of prior_sd_jod; k is normal about 0,
+  /// with one of prior_sd_slope. Always finite.
   Normal,
   /// The prior "bounded" of pwcmp (2017), for comparison with its results. A pair whose answers are unanimous
   /// favours a small range of the scale. With its n answers and r = 1 + max q - min q it adds (log(1/r + 0.1)
   /// + log(max(0, 1/r - n/r^2) + 0.1)) / 2 to the log-likelihood. It does not make a separated scale finite.
   Bounded
 };
-inline constexpr double prior_sd_jod = 5;
+inline constexpr double prior_sd_jod = 5, prior_sd_slope = 2;
 
 struct ScaleOptions {
   ScalePrior prior = ScalePrior::None;
@@ -115,10 +116,11 @@ void score_observers(std::vector<ScaleObserver>& observers);
 std::vector<std::vector<int>> linked_groups(const ScaleData& data);
 
 /// Fits the scale. Refused: fewer than two conditions; no choice (ratings alone have no JOD); several
-/// linked_groups(); ratings of conditions of which no two are linked by choices; an infinite estimate (the
-/// reason names conditions as "item 1", from 1). Intervals need three people, and a fit without each of them.
-/// std::invalid_argument: a condition outside [0, conditions), equal conditions in a pair, a count that is
-/// negative or not finite, a confidence outside (0, 1).
+/// linked_groups(); ratings of conditions of which no two are linked by choices; ratings that differ where
+/// choices do not, so that k has no bound; an infinite estimate (the reason names conditions as "item 1",
+/// from 1). Intervals need three people, and a fit without each of them. std::invalid_argument: a condition
+/// outside [0, conditions), equal conditions in a pair, a count that is negative or not finite, a confidence
+/// outside (0, 1).
 Result<QualityScale> quality_scale(const ScaleData& data, const ScaleOptions& options = {});
 
 }  // namespace stats

@@ -40,9 +40,10 @@ Vector unanimous_pairs(const ScaleAnswers& answers) {
 }
 
 /// Log of the prior; adds its gradient.
-double log_prior(ScalePrior prior, const Vector& unanimous, int conditions, std::span<const double> x,
-                 std::span<double> gradient) {
+double log_prior(ScalePrior prior, const Vector& unanimous, const ScaleLayout& layout,
+                 std::span<const double> x, std::span<double> gradient) {
   if (prior == ScalePrior::None) return 0;
+  const int conditions = layout.conditions;
   Vector q(at(conditions));
   for (int i = 0; i < conditions; ++i) q[at(i)] = ScaleLayout::value(x, i);
   if (prior == ScalePrior::Normal) {
@@ -53,6 +54,11 @@ double log_prior(ScalePrior prior, const Vector& unanimous, int conditions, std:
       sum -= (q[at(i)] - mean) * (q[at(i)] - mean) / (2 * variance);
       ScaleLayout::add(gradient, i, -(q[at(i)] - mean) / variance);
     }
+    if (layout.levels.empty()) return sum;
+    constexpr double slope_variance = prior_sd_slope * prior_sd_slope;
+    const double k = x[layout.slope_place()];
+    gradient[layout.slope_place()] -= k / slope_variance;
+    sum -= k * k / (2 * slope_variance);
     return sum;
   }
   const auto [low, high] = std::minmax_element(q.begin(), q.end());
@@ -112,6 +118,16 @@ std::string undetermined(const ScaleAnswers& answers, const ScaleData& data, Sca
   }
   if (prior == ScalePrior::Normal) return {};
   return connection(wins_of(answers, data.conditions), data.conditions).reason;
+}
+
+/// Why the maximum is none; empty if it is one.
+std::string unbounded(const Minimum& found, const ScaleLayout& layout) {
+  constexpr double farthest = 50;
+  if (!layout.levels.empty() && std::abs(found.x[layout.slope_place()]) > farthest)
+    return "ratings tell conditions apart that choices do not, so that the two have no common unit";
+  if (layout.order && (!found.converged || std::abs(found.x[layout.order_place()]) > farthest))
+    return "the orders of showing do not determine the order bias";
+  return found.converged ? "" : "the fit did not converge";
 }
 
 /// Values to begin with: a flat scale, and thresholds at the shares of the ratings.
@@ -231,19 +247,15 @@ Result<ScaleMaximum> maximise_scale(const ScaleData& data, const ScaleOptions& o
     for (std::size_t t = out.layout.slope_place() + 2; t < x.size(); ++t)
       if (!(x[t] > x[t - 1])) return infinite;
     const double value = scale_log_likelihood(out.answers, out.layout, x, gradient) +
-                         log_prior(options.prior, unanimous, data.conditions, x, gradient);
+                         log_prior(options.prior, unanimous, out.layout, x, gradient);
     for (double& slope : gradient) slope = -slope;
     return std::isfinite(value) ? -value : infinite;
   };
   const bool alike = near && near->x.size() == out.layout.size() && near->layout.levels == out.layout.levels;
-  const Minimum found = alike ? minimise_near(objective, near->x, near->inverse)
-                              : minimise(objective, start_of(out.layout, out.answers));
-  const double farthest = *std::max_element(found.x.begin(), found.x.end(),
-                                            [](double a, double b) { return std::abs(a) < std::abs(b); });
-  if (!found.converged || std::abs(farthest) > 100)
-    return Refusal{options.order_bias
-                       ? "the fit did not converge: the orders of showing may not determine the order bias"
-                       : "the fit did not converge: an estimate may be infinite"};
+  Minimum found;
+  if (alike) found = minimise_near(objective, near->x, near->inverse);
+  if (!found.converged) found = minimise(objective, start_of(out.layout, out.answers));
+  if (const std::string why = unbounded(found, out.layout); !why.empty()) return Refusal{why};
   out.x = found.x;
   if (!found.hessian.empty()) {
     const auto factor = Cholesky::of(found.hessian);

@@ -132,6 +132,8 @@ ScaleCollector::Part& ScaleCollector::part_of(const std::string& name) {
 }
 
 void ScaleCollector::finish(ScaleTable& table, const std::string& place) {
+  if (parts_.empty())
+    throw base::Error(place, "holds no answer", "give answers; a row with count 0 is none");
   for (Part& part : parts_) {
     const std::string where = part.name.empty() ? place : place + ", " + table.by + " " + part.name;
     if (part.conditions.size() > most_conditions)

@@ -128,7 +128,7 @@ joint_case <- function(seed, items, people, prior) {
     level <- match(ratings[, 3], levels)
     l <- sum(pnorm(ifelse(rows[, 4] == 1, eta, -eta), log.p = TRUE)) +
       sum(log(pnorm(t[level + 1] - k * v[ratings[, 2]]) - pnorm(t[level] - k * v[ratings[, 2]])))
-    if (prior) l <- l - sum((v - mean(v))^2) / (2 * 25)
+    if (prior) l <- l - sum((v - mean(v))^2) / (2 * 25) - k^2 / (2 * 4)
     -l
   }
   best <- function(rows, ratings, start) {
