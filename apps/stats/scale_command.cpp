@@ -238,8 +238,8 @@ void add_scale_command(CLI::App& app) {
       "Column, or scene, method, n_*, frame rate or factor of a database: each of its values gets "
       "a scale of its own");
   sub->add_option("--prior", command->prior,
-                  "none: maximum likelihood; normal: each condition within 5 JOD of the mean (one standard "
-                  "deviation); bounded: that of pwcmp")
+                  "none: maximum likelihood; normal: a weak one, by which conditions spread with a standard "
+                  "deviation of 5 JOD; bounded: that of pwcmp")
       ->check(CLI::IsMember({"none", "normal", "bounded"}))
       ->capture_default_str();
   sub->add_flag("--order-bias", command->order_bias,

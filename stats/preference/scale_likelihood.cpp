@@ -127,7 +127,9 @@ std::string unbounded(const Minimum& found, const ScaleLayout& layout) {
     return "ratings tell conditions apart that choices do not, so that the two have no common unit";
   if (layout.order && (!found.converged || std::abs(found.x[layout.order_place()]) > farthest))
     return "the orders of showing do not determine the order bias";
-  return found.converged ? "" : "the fit did not converge";
+  if (found.converged) return "";
+  return layout.levels.empty() ? "the fit did not converge"
+                               : "the fit did not converge; choices and ratings may have no common unit";
 }
 
 /// Values to begin with: a flat scale, and thresholds at the shares of the ratings.

@@ -110,7 +110,7 @@ TEST_F(ScaleCommandE2e, PartsThatNothingLinksAreNamed) {
   const Ended ended = scale("a.csv --json s.json");
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(
-      ended.err,
+      ended.out,
       AllOf(HasSubstr("a.csv: the conditions fall into 2 parts that no answer links: {a, b} and {c, d, e}"),
             HasSubstr("such as a with c")));
   EXPECT_THAT(ended.out, Not(HasSubstr("JOD  ")));
@@ -157,24 +157,24 @@ TEST_F(ScaleCommandE2e, MistakesInFilesAreNamedWithTheirLine) {
 }
 
 TEST_F(ScaleCommandE2e, ChoicesAndRatingsOfADatabaseShareOneScale) {
-  make_study("task1", "--participants 12 --observer random");
+  make_study("task1", "--participants 3 --observer random");
   const Ended alone = scale("s.db");
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.out, HasSubstr("ratings alone have no scale in JOD"));
 
-  make_study("task2", "--participants 12 --observer random");
+  make_study("task2", "--participants 3 --observer random");
   const Ended ended = scale("s.db --prior normal --json s.json");
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("10 conditions, 120 choices, 120 ratings, 12 people"),
-                               HasSubstr("Ours-TSp, 32k"), HasSubstr("the scenes are pooled"),
-                               HasSubstr("simulated by an observer model")));
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("10 conditions, 30 choices, 30 ratings, 3 people"), HasSubstr("Ours-TSp, 32k"),
+                    HasSubstr("the scenes are pooled"), HasSubstr("simulated by an observer model")));
   const auto json = document_at(folder_ / "s.json");
-  EXPECT_EQ(json.at("study").at("simulated"), 12);
+  EXPECT_EQ(json.at("study").at("simulated"), 3);
   EXPECT_EQ(json.at("people_known"), true);
   EXPECT_EQ(fs::status(folder_ / "s.json").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 
   const Ended choices = scale("s.db --protocol task2 --prior normal");
-  EXPECT_THAT(choices.out, AllOf(HasSubstr("5 conditions, 120 choices, 12 people"), Not(HasSubstr("32k"))));
+  EXPECT_THAT(choices.out, AllOf(HasSubstr("5 conditions, 30 choices, 3 people"), Not(HasSubstr("32k"))));
   EXPECT_THAT(scale("s.db --prior normal --by scene").out, HasSubstr("scene single_dam"));
   EXPECT_THAT(scale("s.db --by scenes").out, HasSubstr("the nearest is \"scene\""));
   EXPECT_THAT(scale("s.db --question mood").out, HasSubstr("--question mood: is no question"));

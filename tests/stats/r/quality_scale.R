@@ -97,6 +97,12 @@ choices_case <- function(name, d, order = FALSE, people = TRUE) {
         }
         score <- function(v) { h <- quantile(v, c(.25, .75), type = 5, names = FALSE); ifelse(v < h[1], (h[1] - v) / (h[2] - h[1]), 0) }
         parts["observers"] <- list_of(l)
+        pairs <- combn(items, 2)
+        t <- apply(pairs, 2, function(i) {
+          v <- without[i[1], ] - without[i[2], ]
+          (q[i[1]] - q[i[2]]) / sqrt((n - 1) / n * sum((v - mean(v))^2))
+        })
+        parts["p"] <- list_of(2 * pt(-abs(t), n - 1))
         parts["scores"] <- list_of(score(l))
         parts["scores_per_answer"] <- list_of(score(p / answers))
       }
