@@ -120,8 +120,10 @@ class CsvReader {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::filesystem::path& file) : file_(file.string()) {
-  const std::string text = read_file(file, most_csv_bytes);
+CsvTable::CsvTable(const std::filesystem::path& file)
+    : CsvTable(file.string(), read_file(file, most_csv_bytes)) {}
+
+CsvTable::CsvTable(std::string file, const std::string& text) : file_(std::move(file)) {
   CsvReader reader(file_, text);
   CsvRow row;
   if (!reader.next(row)) throw Error(file_, "is empty", "give a table whose first line names the columns");

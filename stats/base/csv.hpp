@@ -28,6 +28,8 @@ class CsvTable {
   /// UTF-8, ends in quotes; a column without a name or with the name of another; a row with more or fewer
   /// fields than columns.
   explicit CsvTable(const std::filesystem::path& file);
+  /// Reads the text of a file. `file`: its name, for messages.
+  CsvTable(std::string file, const std::string& text);
 
   const std::string& file() const { return file_; }
   const std::vector<std::string>& columns() const { return columns_; }

@@ -114,6 +114,7 @@ struct Place {
 const std::vector<Place> shared_places{
     {"libstudy/analysis/task_",
      {"vip-stats report", "vip-stats fit-ptpe", "vip-stats task1", "vip-stats task2"}},
+    {"libstudy/analysis/tasks/scale_", {"vip-stats scale"}},
     {"libstudy/analysis/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
     {"libstudy/analysis/ptpe/", {"vip-stats fit-ptpe"}},
     {"apps/stats/power", {"vip-stats power"}},
