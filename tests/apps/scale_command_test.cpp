@@ -157,25 +157,26 @@ TEST_F(ScaleCommandE2e, MistakesInFilesAreNamedWithTheirLine) {
 }
 
 TEST_F(ScaleCommandE2e, ChoicesAndRatingsOfADatabaseShareOneScale) {
-  make_study("task1", "--participants 3 --observer random");
+  make_study("task1", "--participants 1 --observer random");
   const Ended alone = scale("s.db");
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.out, HasSubstr("ratings alone have no scale in JOD"));
 
-  make_study("task2", "--participants 3 --observer random");
+  make_study("task2", "--participants 2 --observer random");
   const Ended ended = scale("s.db --prior normal --json s.json");
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   EXPECT_THAT(ended.out,
-              AllOf(HasSubstr("10 conditions, 30 choices, 30 ratings, 3 people"), HasSubstr("Ours-TSp, 32k"),
+              AllOf(HasSubstr("10 conditions, 20 choices, 10 ratings, 2 people"), HasSubstr("Ours-TSp, 32k"),
                     HasSubstr("the scenes are pooled"), HasSubstr("simulated by an observer model")));
   const auto json = document_at(folder_ / "s.json");
-  EXPECT_EQ(json.at("study").at("simulated"), 3);
+  EXPECT_EQ(json.at("study").at("simulated"), 2);
   EXPECT_EQ(json.at("people_known"), true);
   EXPECT_EQ(fs::status(folder_ / "s.json").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 
   const Ended choices = scale("s.db --protocol task2 --prior normal");
-  EXPECT_THAT(choices.out, AllOf(HasSubstr("5 conditions, 30 choices, 3 people"), Not(HasSubstr("32k"))));
-  EXPECT_THAT(scale("s.db --prior normal --by scene").out, HasSubstr("scene single_dam"));
+  EXPECT_THAT(choices.out, AllOf(HasSubstr("5 conditions, 20 choices, 2 people"), Not(HasSubstr("32k"))));
+  EXPECT_THAT(scale("s.db --protocol task2 --prior normal --by scene").out,
+              HasSubstr("scene faucet\n5 conditions, 10 choices, 1 people"));
   EXPECT_THAT(scale("s.db --by scenes").out, HasSubstr("the nearest is \"scene\""));
   EXPECT_THAT(scale("s.db --question mood").out, HasSubstr("--question mood: is no question"));
   EXPECT_THAT(scale("s.db --ratings r.csv").out, HasSubstr("--ratings: does not apply to a database"));
