@@ -115,7 +115,9 @@ void print_scale(const study::Json& json, const study::Json& scale, const std::s
   std::printf("%zu conditions, %.0f choices%s, %s\n", scale.at("conditions").size(),
               scale.at("choices").get<double>(),
               ratings > 0 ? fmt::format(", {:.0f} ratings", ratings).c_str() : "",
-              people.is_number() ? fmt::format("{} people", people.get<int>()).c_str() : "people not known");
+              !people.is_number()      ? "people not known"
+              : people.get<int>() == 1 ? "1 person"
+                                       : fmt::format("{} people", people.get<int>()).c_str());
   const auto lines = lines_of(scale, reference);
   std::size_t width = 9;
   for (const ScaleLine& line : lines) width = std::max(width, line.condition.size());
@@ -225,10 +227,11 @@ void add_scale_command(CLI::App& app) {
   auto command = std::make_shared<ScaleCommand>();
   auto* sub = app.add_subcommand(
       "scale", "Pairwise choices and ratings on one scale, in just-objectionable differences (JOD)");
-  sub->add_option("DATABASE", command->input,
-                  "Database of vip-study, or CSV file of choices with the columns first, second, chosen, and "
-                  "person (docs/statistics.md)")
-      ->required();
+  auto* input =
+      sub->add_option("database", command->input,
+                      "Database of vip-study, or CSV file of choices with the columns first, second, "
+                      "chosen, and person (docs/statistics.md)");
+  sub->add_option("--db", command->input, "The same as an option")->excludes(input);
   sub->add_option(
       "--ratings", command->ratings,
       "CSV file of ratings beside the CSV file of choices, with the columns condition, score, and "
@@ -250,14 +253,19 @@ void add_scale_command(CLI::App& app) {
   sub->add_option("--json", command->json, "File for every number (docs/report.md)")->check(output_file());
   add_plan(*sub, command->plan);
   sub->add_option(
-      "--protocol", command->protocols,
-      "Name of a protocol, 'NAME VERSION', or first digits of its SHA-256; may be given twice: of "
-      "choices and of ratings");
+         "--protocol", command->protocols,
+         "Name of a protocol, 'NAME VERSION', or first digits of its SHA-256; may be given twice: of "
+         "choices and of ratings")
+      ->allow_extra_args(false);
   sub->add_option("--question", command->questions,
-                  "Id of a question; may be given twice: of choices and of ratings");
+                  "Id of a question; may be given twice: of choices and of ratings")
+      ->allow_extra_args(false);
   add_incomplete(*sub, command->incomplete);
-  sub->footer(registered_files);
-  sub->callback([command] { run_scale(*command); });
+  sub->footer(std::string("Files made from a database:\n") + registered_files);
+  sub->callback([command] {
+    check_given(command->input);
+    run_scale(*command);
+  });
 }
 
 }  // namespace apps

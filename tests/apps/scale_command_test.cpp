@@ -77,7 +77,7 @@ TEST_F(ScaleCommandE2e, OnePersonIsOnePersonHoweverManyAnswers) {
   write("a.csv", "person,first,second,chosen,count\nP1,a,b,first,400\nP1,a,b,second,200\n");
   const Ended ended = scale("a.csv --reference b");
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("600 choices, 1 people"), HasSubstr("no intervals: one person"),
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("600 choices, 1 person"), HasSubstr("no intervals: one person"),
                                HasSubstr("a            0.64")));
 }
 
@@ -146,6 +146,8 @@ TEST_F(ScaleCommandE2e, MistakesInFilesAreNamedWithTheirLine) {
   EXPECT_THAT(refusal(head + "P1,a,b,a,0\n"), HasSubstr("holds no answer"));
   EXPECT_THAT(refusal(head + "P1,first,b,b,1\n"), HasSubstr("names a condition \"first\""));
   EXPECT_THAT(refusal("person,first,second\nP1,a,b\n"), HasSubstr("has no column chosen"));
+  EXPECT_THAT(refusal(head + "P1,a,b,a,1\n", "--by first"),
+              HasSubstr("--by first: is a column of the answers"));
   EXPECT_THAT(refusal(head + "P1,a,b,a,1\n", "--by scene"), HasSubstr("has no column scene"));
   EXPECT_THAT(refusal(head + "P1,a,b,a,1\nP1,a,b,b,1\n", "--reference c"),
               HasSubstr("--reference c: is no condition"));
@@ -176,8 +178,9 @@ TEST_F(ScaleCommandE2e, ChoicesAndRatingsOfADatabaseShareOneScale) {
   const Ended choices = scale("s.db --protocol task2 --prior normal");
   EXPECT_THAT(choices.out, AllOf(HasSubstr("5 conditions, 20 choices, 2 people"), Not(HasSubstr("32k"))));
   EXPECT_THAT(scale("s.db --protocol task2 --prior normal --by scene").out,
-              HasSubstr("scene faucet\n5 conditions, 10 choices, 1 people"));
-  EXPECT_THAT(scale("s.db --by scenes").out, HasSubstr("the nearest is \"scene\""));
+              HasSubstr("scene faucet\n5 conditions, 10 choices, 1 person"));
+  EXPECT_THAT(scale("--protocol task1 --protocol task2 --by scenes s.db").out,
+              HasSubstr("the nearest is \"scene\""));
   EXPECT_THAT(scale("s.db --question mood").out, HasSubstr("--question mood: is no question"));
   EXPECT_THAT(scale("s.db --ratings r.csv").out, HasSubstr("--ratings: does not apply to a database"));
 }

@@ -132,8 +132,7 @@ ScaleCollector::Part& ScaleCollector::part_of(const std::string& name) {
 }
 
 void ScaleCollector::finish(ScaleTable& table, const std::string& place) {
-  if (parts_.empty())
-    throw base::Error(place, "holds no answer", "give answers; a row with count 0 is none");
+  if (parts_.empty()) throw base::Error(place, "holds no answer", "give answers; a row with count 0 is none");
   for (Part& part : parts_) {
     const std::string where = part.name.empty() ? place : place + ", " + table.by + " " + part.name;
     if (part.conditions.size() > most_conditions)
@@ -161,6 +160,10 @@ void ScaleCollector::finish(ScaleTable& table, const std::string& place) {
 
 ScaleTable scale_table_of_csv(const std::filesystem::path& choices, const std::filesystem::path& ratings,
                               const std::string& by) {
+  for (const char* own : {"first", "second", "chosen", "condition", "score", "count"})
+    if (by == own)
+      throw base::Error("--by " + by, "is a column of the answers themselves",
+                        "name a column that says where or when they were given, such as scene");
   ScaleTable out{.by = by};
   ScaleCollector collector;
   const auto read = [&](const std::filesystem::path& file, const std::set<std::string>& own, auto add) {
