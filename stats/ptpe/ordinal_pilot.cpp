@@ -200,7 +200,7 @@ bool rises(const OrdinalPilotFit& fit, const Rows& rows) {
 }
 
 /// A fit, with the values from which the fits without one participant start.
-struct Fitted {
+struct FittedPilot {
   OrdinalPilotFit fit;
   Rows rows;
   std::vector<double> at, inverse_hessian;
@@ -213,7 +213,7 @@ Result<OrdinalPilotFit> checked(const Minimum& best, const Rows& rows, double le
   return fit;
 }
 
-Result<Fitted> fit_all(std::span<const PilotRating> ratings, PilotMean mean, double level, int points) {
+Result<FittedPilot> fit_all(std::span<const PilotRating> ratings, PilotMean mean, double level, int points) {
   if (ratings.empty()) return Refusal{"no ratings"};
   auto rows = rows_of(ratings, mean);
   if (rows.levels.size() < 2) return Refusal{"all ratings are equal: there is no threshold to estimate"};
@@ -230,13 +230,13 @@ Result<Fitted> fit_all(std::span<const PilotRating> ratings, PilotMean mean, dou
   const auto best = minimise(objective, start);
   const auto fit = checked(best, rows, level);
   if (!fit) return Refusal{fit.reason()};
-  return Fitted{*fit, std::move(rows), best.x, Cholesky::of(best.hessian)->inverse()};
+  return FittedPilot{*fit, std::move(rows), best.x, Cholesky::of(best.hessian)->inverse()};
 }
 
 /// A fit to a part of the same ratings: started from `whole`, or from first_guess() if a score no longer
 /// occurs in the part.
 Result<OrdinalPilotFit> fit_part(std::span<const PilotRating> ratings, PilotMean mean, double level,
-                                 const Fitted& whole) {
+                                 const FittedPilot& whole) {
   const auto rows = rows_of(ratings, mean, &whole.rows);
   if (rows.levels != whole.rows.levels) return fit_ordinal_pilot(ratings, mean, level);
   MixedLikelihood likelihood(rows.category, rows.participant, Link::Probit, 1);
@@ -247,7 +247,7 @@ Result<OrdinalPilotFit> fit_part(std::span<const PilotRating> ratings, PilotMean
 /// Fits without each participant in turn, in parallel; returns the first refusal if there is one.
 Result<std::vector<Curve>> leave_one_out(const std::vector<PilotRating>& ratings,
                                          const std::vector<int>& people, PilotMean mean, double level,
-                                         const Fitted& whole) {
+                                         const FittedPilot& whole) {
   std::vector<Result<OrdinalPilotFit>> fits(people.size(), Refusal{"not computed"});
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t p = 0; p < people.size(); ++p) {
