@@ -117,6 +117,8 @@ const std::vector<Place> shared_places{
     {"libstudy/analysis/tasks/scale_", {"vip-stats scale"}},
     {"libstudy/analysis/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
     {"libstudy/analysis/ptpe/", {"vip-stats fit-ptpe"}},
+    {"libstudy/analysis/rivals/", {"vip-stats compare-models"}},
+    {"apps/stats/compare_models_command", {"vip-stats compare-models"}},
     {"apps/stats/power", {"vip-stats power"}},
     {"libstudy/power/", {"vip-stats power"}},
     {"apps/stats/fit_ptpe_command", {"vip-stats fit-ptpe"}},

@@ -181,6 +181,7 @@ const Rooms rooms{
     {"libstudy/pages", 7},
     {"libstudy/store/export", 7},
     {"libstudy/analysis/ptpe", 8},
+    {"libstudy/analysis/rivals", 8},
     {"libstudy/pages/gui", 8},
     {"libstudy/power", 8},
     {"libstudy/stimulus", 8},

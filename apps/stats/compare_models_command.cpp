@@ -1,0 +1,194 @@
+/// vip-stats compare-models: which property of the frame timing predicts the answers of people.
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/common/options.hpp"
+#include "apps/stats/choice_options.hpp"
+#include "apps/stats/commands.hpp"
+#include "libstudy/analysis/plan_file.hpp"
+#include "libstudy/analysis/rivals/compare_models.hpp"
+#include "libstudy/store/read/task_answers.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace apps {
+
+namespace {
+
+struct CompareCommand {
+  std::string database, json, plan, models;
+  std::optional<std::string> exclude;
+  std::optional<std::uint64_t> seed;
+  int folds = 0;
+  bool incomplete = false;
+  ChoiceOptions choice;
+
+  study::StudyFile file() const { return {database, incomplete}; }
+};
+
+double real(const study::Json& json, const char* key) { return json.at(key).get<double>(); }
+std::string words(const study::Json& json, const char* key) { return json.at(key).get<std::string>(); }
+
+void print_head(const study::Json& json) {
+  std::printf("%s, question \"%s\": %d people, %d answers to %d timings\n",
+              words(json.at("protocol"), "name").c_str(), words(json, "question").c_str(),
+              json.at("people").get<int>(), json.at("answers").get<int>(), json.at("settings").get<int>());
+  std::printf("exploratory: no analysis plan declares a comparison of models\n");
+  if (json.at("test_data").get<bool>()) std::printf("note: these are test data, not a study\n");
+  if (const int n = json.at("simulated_participants").get<int>(); n > 0)
+    std::printf("note: %d participants are simulated\n", n);
+  const auto& left_out = json.at("left_out");
+  if (const int n = left_out.at("excluded").get<int>(); n > 0)
+    std::printf("note: %d answers are left out by rule or by hand\n", n);
+  for (const auto& [reason, n] : left_out.at("without_frames").items())
+    std::printf("note: %d answers are left out: %s\n", n.get<int>(), reason.c_str());
+}
+
+void print_models(const study::Json& json) {
+  const bool alone = json.at("folds") == json.at("people");
+  std::printf("\nlog score of people whom the fit did not see (%s); +- one standard error over people\n",
+              alone ? "each left out in turn"
+                    : fmt::format("in {} groups, seed {}", json.at("folds").get<int>(),
+                                  json.at("seed").get<std::uint64_t>())
+                          .c_str());
+  std::printf("  %-24s %10s %18s %7s %6s %6s  %s\n", "model", "log score", "behind the best", "weight",
+              "lapse", "people", "b");
+  for (const auto& one : json.at("models")) {
+    const std::string name = words(one, "name");
+    if (one.contains("refused")) {
+      std::printf("  %-24s left out: %s\n", name.c_str(), words(one, "refused").c_str());
+      continue;
+    }
+    const bool best = real(one, "behind") == 0 && real(one, "behind_se") == 0;
+    std::printf(
+        "  %-24s %10.1f %18s %7s %6.3f %6.2f  %s\n", name.c_str(), real(one, "log_score"),
+        best ? "-" : fmt::format("{:.1f} +- {:.1f}", -real(one, "behind"), real(one, "behind_se")).c_str(),
+        one.contains("weight") ? fmt::format("{:.2f}", real(one, "weight")).c_str() : "-", real(one, "lapse"),
+        real(one, "sd_person"), one.contains("b") ? fmt::format("{:.4g}", real(one, "b")).c_str() : "");
+  }
+  std::printf(
+      "  weight: of the best mixture (stacking). lapse: share of guesses. people: SD between people.\n"
+      "  nothing: no predictor. free: a value for each timing; it is no rival.\n");
+}
+
+void print_collinear(const study::Json& json) {
+  const auto& running = json.at("proposals").at("between");
+  std::printf("\nR2 of a model's predictor, fitted by another model over the timings shown\n");
+  for (const auto& one : json.at("collinear")) {
+    const auto in = [&](const char* key) {
+      return std::find(running.begin(), running.end(), one.at(key)) != running.end();
+    };
+    if (in("predictor_of") && in("by"))
+      std::printf("  %s by %s: %.4f\n", words(one, "predictor_of").c_str(), words(one, "by").c_str(),
+                  real(one, "r2"));
+  }
+}
+
+void print_calibration(const study::Json& json) {
+  const std::string best = json.at("verdict").at("in_the_running").at(0).get<std::string>();
+  std::printf("\ncalibration of %s: answers by the score that it predicts\n  %8s %8s %10s %18s\n",
+              best.c_str(), "score", "answers", "predicted", "observed");
+  for (const auto& model : json.at("models")) {
+    if (model.at("name") != best) continue;
+    for (const auto& bin : model.at("calibration"))
+      std::printf("  %8d %8d %10.2f %18s\n", bin.at("score").get<int>(), bin.at("answers").get<int>(),
+                  real(bin, "predicted"),
+                  fmt::format("{:.2f} +- {:.2f}", real(bin, "observed"), real(bin, "se")).c_str());
+  }
+}
+
+void print_proposals(const study::Json& json) {
+  const auto& proposals = json.at("proposals");
+  if (!proposals.contains("tried")) return;
+  std::string names;
+  for (const auto& one : proposals.at("between"))
+    names += (names.empty() ? "" : ", ") + one.get<std::string>();
+  std::printf("\ntimings at which %s differ most (mean score by each; nats that one answer tells)\n",
+              names.c_str());
+  for (const auto& one : proposals.at("timings")) {
+    std::string scores;
+    for (const auto& score : one.at("scores")) scores += fmt::format(" {:5.2f}", score.get<double>());
+    std::printf("  %.4f %s  %s\n", real(one, "information"), scores.c_str(), words(one, "words").c_str());
+    if (words(one, "timing").size() < 100) std::printf("         %s\n", words(one, "timing").c_str());
+    if (one.contains("pacing")) std::printf("         [pacing] %s\n", words(one, "pacing").c_str());
+  }
+  if (proposals.at("timings").empty())
+    std::printf("  none: at every timing tried a predictor lies beyond what was shown\n");
+  std::printf("  %d of %d timings tried were left out, because a predictor lies beyond what was shown.\n",
+              proposals.at("beyond_what_was_shown").get<int>(), proposals.at("tried").get<int>());
+}
+
+void compare_models(const CompareCommand& command) {
+  check_apart(command.database, {{"--json", command.json}, {"--plan", command.plan}});
+  stats::AnalysisPlan plan;
+  if (!command.plan.empty()) plan = study::read_plan(command.plan).plan;
+  if (command.exclude) plan.exclusions.timing = study::timing_rule_of(*command.exclude);
+  const auto models =
+      command.models.empty() ? study::usual_timing_models() : study::parse_timing_models(command.models);
+  const auto study = study::read_tasks(command.file());
+  if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
+  std::string mend;
+  const auto chosen =
+      study::choose_rated_task(study, command.choice.selection(study::TaskKind::Pilot, plan), mend);
+  if (!chosen) throw base::Error(command.database, "no comparison: " + chosen.reason(), mend);
+  const auto data = study::collect_rival_data(command.file(), study, *chosen, plan.exclusions);
+  if (const auto reason = study::why_no_comparison(data, mend); !reason.empty())
+    throw base::Error(command.database, "no comparison: " + reason, mend);
+  if (command.folds > data.answers.people)
+    throw base::Error("--folds " + std::to_string(command.folds),
+                      "there are only " + std::to_string(data.answers.people) + " people",
+                      "give at most as many groups, or leave it out");
+  const stats::RivalComparisonOptions options{command.folds, command.seed.value_or(plan.seed), {}};
+  const auto comparison = study::compare_timing_models(data, models, options);
+  if (!comparison)
+    throw base::Error(command.database, "no comparison: " + comparison.reason(),
+                      "choose other --models, or collect more answers");
+  auto json = study::compare_models_json(data, models, options, *comparison);
+  if (!study.lacking.empty()) json["incomplete"] = study.lacking;
+  if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
+  print_head(json);
+  print_models(json);
+  std::printf("\n%s.\n", words(json.at("verdict"), "text").c_str());
+  print_collinear(json);
+  print_calibration(json);
+  print_proposals(json);
+}
+
+}  // namespace
+
+void add_compare_models_command(CLI::App& app) {
+  auto command = std::make_shared<CompareCommand>();
+  auto* sub = app.add_subcommand("compare-models",
+                                 "Which property of the frame timing predicts people's answers best");
+  add_database_argument(*sub, command->database);
+  add_incomplete(*sub, command->incomplete);
+  add_protocol_choice(*sub, command->choice);
+  sub->add_option("--question", command->choice.question, "Id of the question; needed if several are rated");
+  sub->add_option(
+      "--models", command->models,
+      "Models, separated by commas: ptpe, mean_rate, arithmetic_rate, rate_sd, frame_time_sd, p95, "
+      "p99, longest, hitches, steps, or two of these joined by '+'; without: the usual eight");
+  add_count(*sub, "--folds", command->folds, 0, 1000,
+            "Groups of people that are left out in turn; 0: each person by themselves");
+  sub->add_option("--seed", command->seed, "Seed of the groups, instead of the plan's (default: 1)");
+  sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
+      ->check(output_file());
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML) with the rules of exclusion; without: the defaults");
+  sub->add_option("--exclude", command->exclude,
+                  "Trials left out by timing verdict, instead of what the plan says (default: fail)")
+      ->check(CLI::IsMember({"none", "fail", "degraded"}));
+  sub->callback([command] {
+    check_given(command->database);
+    if (command->folds == 1)
+      throw base::Error("--folds 1", "leaves nobody to fit", "give 0, or 2 and more groups");
+    compare_models(*command);
+  });
+}
+
+}  // namespace apps

@@ -1,0 +1,29 @@
+#pragma once
+/// Compares what people may notice of frame timing on the answers of a study, and writes the result as JSON.
+
+#include <string>
+#include <vector>
+
+#include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/rivals/rival_data.hpp"
+#include "stats/ordinal/rival_comparison.hpp"
+
+namespace study {
+
+/// Most timings for which a model with a free value for each is fitted beside the rivals.
+inline constexpr std::size_t most_free_settings = 60;
+inline constexpr const char* free_model = "free";  ///< name of this model
+
+/// Fits and compares the models. The last model of the comparison is free_model, if there are at most
+/// most_free_settings timings. why_no_comparison() must be empty for the data. Refused as
+/// stats::compare_rivals().
+stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& data,
+                                                       const std::vector<TimingModel>& models,
+                                                       const stats::RivalComparisonOptions& options);
+
+/// The document of `vip-stats compare-models --json` (docs/statistics.md): every number that the command
+/// prints.
+Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,
+                         const stats::RivalComparisonOptions& options, const stats::RivalComparison& comparison);
+
+}  // namespace study
