@@ -44,7 +44,7 @@ void add(stats::ExactMean& mean, double value) {
   mean.count = first ? 1 : mean.count + 1;
 }
 
-Occasions mean_of(const std::vector<std::array<std::optional<double>, 2>>& sessions) {
+Occasions occasion_means(const std::vector<std::array<std::optional<double>, 2>>& sessions) {
   const bool paired =
       std::any_of(sessions.begin(), sessions.end(), [](const auto& one) { return one[0] && one[1]; });
   Occasions out;
@@ -65,7 +65,7 @@ Occasions ssq_occasions(const Sessions& sessions, stats::SsqScale scale) {
   std::vector<std::array<std::optional<double>, 2>> sums;
   for (const auto* session : sessions)
     sums.push_back({sum_of(session->ssq_before(), scale), sum_of(session->ssq_after(), scale)});
-  return mean_of(sums);
+  return occasion_means(sums);
 }
 
 Occasions fms_occasions(const Sessions& sessions) {
@@ -74,7 +74,7 @@ Occasions fms_occasions(const Sessions& sessions) {
     // The first answer is compared with the last one, so a session needs two.
     if (session->fms.size() > 1) ends.push_back({session->fms.front().score, session->fms.back().score});
   }
-  return mean_of(ends);
+  return occasion_means(ends);
 }
 
 template <class Occasion>
