@@ -84,8 +84,13 @@ void set_verdict(RivalComparison& out, int reference) {
   }
   out.verdict = out.in_the_running.size() == 1 ? RivalVerdict::Winner : RivalVerdict::Undecided;
   const bool scored = std::find(out.order.begin(), out.order.end(), reference) != out.order.end();
-  if (scored && rival_lead(score(reference), score(best)).leads())
+  if (!scored) return;
+  const auto misfit = rival_lead(score(reference), score(best));
+  if (misfit.leads()) {
     out.verdict = RivalVerdict::NoneFits;
+  } else if (misfit.difference > 0) {
+    out.verdict = RivalVerdict::Undecided;
+  }
 }
 
 }  // namespace
@@ -99,7 +104,7 @@ RivalLead rival_lead(std::span<const double> a, std::span<const double> b) {
 }
 
 Result<RivalComparison> compare_rivals(const std::vector<RivalModel>& models, const RivalAnswers& answers,
-                                  int reference, const RivalComparisonOptions& options) {
+                                       int reference, const RivalComparisonOptions& options) {
   if (answers.people < least_people_to_compare)
     return Refusal{"models are compared over at least " + std::to_string(least_people_to_compare) +
                    " people, not " + std::to_string(answers.people)};

@@ -44,9 +44,11 @@ struct RivalLead {
 RivalLead rival_lead(std::span<const double> a, std::span<const double> b);
 
 enum class RivalVerdict {
-  Winner,     ///< one model leads every rival by more than two standard errors
-  Undecided,  ///< several models are within two standard errors of the best
-  NoneFits    ///< a free value for each setting predicts better than the best rival by more than two
+  Winner,     ///< one model leads every rival by more than two standard errors, and the reference predicts no
+              ///< better
+  Undecided,  ///< several models are in the running; or one, but the reference predicts better, by less than
+              ///< that
+  NoneFits    ///< the reference leads the best rival by more than two standard errors
 };
 
 struct RivalComparison {
@@ -64,7 +66,7 @@ struct RivalComparison {
 /// models (the reference left out) that can be fitted. std::invalid_argument as RivalFitter, and for one fold
 /// or more folds than people.
 Result<RivalComparison> compare_rivals(const std::vector<RivalModel>& models, const RivalAnswers& answers,
-                                  int reference, const RivalComparisonOptions& options);
+                                       int reference, const RivalComparisonOptions& options);
 
 /// Weights w >= 0 with sum 1 that maximise sum over people of log(sum over models of w exp(score)) (stacking
 /// of predictive distributions; Yao and others 2018, Bayesian Anal. 13, 917-1007). scores[model][person].

@@ -143,7 +143,7 @@ TEST(CompareModelsE2e, PrintsWhatTheJsonHolds) {
   const std::string json_file = pilots().folder / "out.json";
   const auto ended =
       compare(pilots().freezes.string() + " --models longest,p95,mean_rate --folds 5 --json " + json_file);
-  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
   for (const char* part : {"10 people, 210 answers to 21 timings", "exploratory: ", "longest", "nothing",
                            "calibration of longest", "timings at which"})
     EXPECT_THAT(ended.out, HasSubstr(part));
@@ -164,8 +164,8 @@ TEST(CompareModelsE2e, RefusesWithRemedies) {
                                   const std::string& mend) {
     const auto ended = compare(arguments);
     EXPECT_EQ(ended.exit_code, 1) << arguments;
-    EXPECT_THAT(ended.err, HasSubstr(problem)) << arguments;
-    EXPECT_THAT(ended.err, HasSubstr(mend)) << arguments;
+    EXPECT_THAT(ended.out, HasSubstr(problem)) << arguments;
+    EXPECT_THAT(ended.out, HasSubstr(mend)) << arguments;
   };
   expect_refused(at("few.db"), "at least 8 people, not 7", "collect more participants");
   expect_refused(at("bare.db") + " --exclude none --json " + at("none.json"), "no comparison",

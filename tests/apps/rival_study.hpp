@@ -39,7 +39,8 @@ inline void write(const std::filesystem::path& path, int people, const Score& sc
   for (int p = 0; p < people; ++p) codes.push_back("P" + std::to_string(p + 1));
   study::Store store(path, study::sqlite::Open::Create);
   store.add_run(study::test::run_plan(protocol, codes));
-  for (const auto& session : store.open_runs().at(0).sessions) {
+  const auto runs = store.open_runs();
+  for (const auto& session : runs.at(0).sessions) {
     const int person = std::stoi(session.plan.participant.substr(1)) - 1;
     for (const auto& unit : session.units) {
       if (!unit.trial) {

@@ -200,7 +200,16 @@ class Document {
         name(best_rival()), name(second), difference_words(-score(second).behind, score(second).behind_se));
   }
 
+  std::string open_words() const {
+    const auto lead = stats::rival_lead(comparison_.models.back().by_person, score(best_rival()).by_person);
+    return fmt::format(
+        "{} leads every rival by more than two standard errors, but a free value for each setting predicts "
+        "better still, by {}. Whether {} describes the answers is open",
+        name(best_rival()), difference_words(lead.difference, lead.se), name(best_rival()));
+  }
+
   std::string undecided_words() const {
+    if (comparison_.in_the_running.size() == 1) return open_words();
     std::vector<std::string> names;
     std::string nested;
     for (const int m : comparison_.in_the_running) {
@@ -295,14 +304,15 @@ class Document {
 }  // namespace
 
 stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& data,
-                                                       const std::vector<TimingModel>& models,
-                                                       const stats::RivalComparisonOptions& options) {
+                                                            const std::vector<TimingModel>& models,
+                                                            const stats::RivalComparisonOptions& options) {
   const auto rivals = rival_models(data, models);
   return stats::compare_rivals(rivals, data.answers, reference_of(rivals), options);
 }
 
 Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,
-                         const stats::RivalComparisonOptions& options, const stats::RivalComparison& comparison) {
+                         const stats::RivalComparisonOptions& options,
+                         const stats::RivalComparison& comparison) {
   return Document(data, models, options, comparison).json();
 }
 
