@@ -18,12 +18,13 @@ inline constexpr const char* free_model = "free";  ///< name of this model
 /// most_free_settings timings. why_no_comparison() must be empty for the data. Refused as
 /// stats::compare_rivals().
 stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& data,
-                                                       const std::vector<TimingModel>& models,
-                                                       const stats::RivalComparisonOptions& options);
+                                                            const std::vector<TimingModel>& models,
+                                                            const stats::RivalComparisonOptions& options);
 
 /// The document of `vip-stats compare-models --json` (docs/statistics.md): every number that the command
 /// prints.
 Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,
-                         const stats::RivalComparisonOptions& options, const stats::RivalComparison& comparison);
+                         const stats::RivalComparisonOptions& options,
+                         const stats::RivalComparison& comparison);
 
 }  // namespace study
