@@ -67,6 +67,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-stats report " + database_ + " --html ",
             "vip-stats report " + database_ + " --html " + page_ + " --json ",
             "vip-stats task2 " + database_ + " --json ",
+            "vip-stats scale " + database_ + " --protocol task2 --prior normal --json ",
             power_ + " --json ",
             power_ + " --csv ",
             power_ + " --svg ",

@@ -130,6 +130,22 @@ void check_one_protocol(const std::vector<TaskData>& all, const std::string& dat
   }
 }
 
+/// Leaves out the frame rates if they follow from the other attributes: each method of Task 2 has the rate of
+/// its scene.
+void leave_out_rates_that_follow(std::vector<ScaledTrial>& trials) {
+  const auto has_rate = [](const Attributes& side) {
+    return !side.empty() && side.back().first == rate_attribute;
+  };
+  std::map<Attributes, std::set<std::string>> rates;
+  for (const ScaledTrial& trial : trials)
+    for (const Attributes* side : {&trial.first, &trial.second})
+      if (has_rate(*side)) rates[{side->begin(), side->end() - 1}].insert(side->back().second);
+  if (std::any_of(rates.begin(), rates.end(), [](const auto& one) { return one.second.size() > 1; })) return;
+  for (ScaledTrial& trial : trials)
+    for (Attributes* side : {&trial.first, &trial.second})
+      if (has_rate(*side)) side->pop_back();
+}
+
 std::vector<ScaledTrial> trials_for_scale(const TaskData& data) {
   std::vector<ScaledTrial> out;
   for (const AnsweredTrial& trial : data.answered) {
@@ -147,26 +163,17 @@ std::vector<ScaledTrial> trials_for_scale(const TaskData& data) {
       out.push_back(std::move(one));
     }
   }
+  leave_out_rates_that_follow(out);
   return out;
 }
 
-/// Names conditions by the attributes that vary, without the one that parts the answers, and without frame
-/// rates that follow from the other attributes.
+/// Names conditions by the attributes that vary, without the one that parts the answers.
 class ConditionNames {
  public:
   ConditionNames(const std::vector<ScaledTrial>& trials, std::string by) : by_(std::move(by)) {
     for (const ScaledTrial& trial : trials)
       for (const Attributes* side : {&trial.first, &trial.second})
         for (const auto& [name, value] : *side) values_[name].insert(value);
-    std::map<Attributes, std::set<std::string>> rates;
-    for (const ScaledTrial& trial : trials) {
-      for (const Attributes* side : {&trial.first, &trial.second}) {
-        if (side->empty() || side->back().first != rate_attribute) continue;
-        rates[{side->begin(), side->end() - 1}].insert(side->back().second);
-      }
-    }
-    rates_follow_ =
-        std::all_of(rates.begin(), rates.end(), [](const auto& one) { return one.second.size() < 2; });
     if (by_.empty() || values_.contains(by_)) return;
     std::vector<std::string> names;
     for (const auto& [name, values] : values_) names.push_back(name);
@@ -178,7 +185,6 @@ class ConditionNames {
     std::string out;
     for (const auto& [name, value] : attributes) {
       if (name == by_ || name == scene_attribute || values_.at(name).size() < 2) continue;
-      if (name == rate_attribute && rates_follow_) continue;
       out += (out.empty() ? "" : ", ") + value;
     }
     return out.empty() ? "the only condition" : out;
@@ -196,7 +202,6 @@ class ConditionNames {
  private:
   std::string by_;
   std::map<std::string, std::set<std::string>> values_;
-  bool rates_follow_ = true;
 };
 
 }  // namespace
