@@ -39,8 +39,6 @@ std::vector<std::string> fields_of(const std::string& line, char separator) {
   return out;
 }
 
-}  // namespace
-
 char separator_of(const std::string& line) {
   std::string outside;  // what no quotes enclose
   bool quoted = false;
@@ -52,6 +50,8 @@ char separator_of(const std::string& line) {
     if (outside.find(c) != std::string::npos) return c;
   return ',';
 }
+
+}  // namespace
 
 CaptureTable::CaptureTable(const std::filesystem::path& file)
     : file_(file.string()), lines_(base::read_file(file, most_capture_bytes)) {

@@ -58,10 +58,6 @@ class CaptureTable {
   std::size_t later_fields_ = 0;  ///< number of fields of the rows after the first
 };
 
-/// The separator of the fields of a line: a tab, a semicolon or a comma, whichever comes first in this list
-/// and stands outside quotes; a comma if none does.
-char separator_of(const std::string& line);
-
 /// True for a column whose zeros and "NA" mark frames that were never shown.
 bool is_displayed(const std::string& column);
 

@@ -32,6 +32,8 @@ class CsvReader {
     separator_ = separator_of_first_line();
   }
 
+  char separator() const { return separator_; }
+
   /// Sets `row` to the next row that is not blank; false at the end.
   bool next(CsvRow& row) {
     while (place_ < text_.size()) {
@@ -127,17 +129,15 @@ CsvTable::CsvTable(std::string file, const std::string& text) : file_(std::move(
   CsvReader reader(file_, text);
   CsvRow row;
   if (!reader.next(row)) throw Error(file_, "is empty", "give a table whose first line names the columns");
+  separator_ = reader.separator();
   columns_ = row.fields;
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (columns_[i].empty())
-      fail(row, "gives column " + std::to_string(i + 1) + " no name", "name each column in the first line");
-    if (!is_plain_line(columns_[i])) fail(row, "names a column in several lines", "use names of one line");
-    if (std::find(columns_.begin(), columns_.begin() + static_cast<std::ptrdiff_t>(i), columns_[i]) !=
-        columns_.begin() + static_cast<std::ptrdiff_t>(i))
-      fail(row, "names the column " + shortened(columns_[i]) + " twice",
-           "give each column a name of its own");
-  }
+  const bool open_end = columns_.size() > 1 && columns_.back().empty();
+  if (open_end) columns_.pop_back();
+  for (const std::string& name : columns_)
+    if (!is_plain_line(name)) fail(row, "names a column in several lines", "use names of one line");
   while (reader.next(row)) {
+    if (open_end && row.fields.size() == columns_.size() + 1 && row.fields.back().empty())
+      row.fields.pop_back();
     if (row.fields.size() != columns_.size())
       fail(row,
            "has " + std::to_string(row.fields.size()) + " fields where " + std::to_string(columns_.size()) +
@@ -150,6 +150,9 @@ CsvTable::CsvTable(std::string file, const std::string& text) : file_(std::move(
 std::optional<std::size_t> CsvTable::find(const std::string& name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found == columns_.end()) return {};
+  if (std::find(found + 1, columns_.end(), name) != columns_.end())
+    throw Error(file_ + ":1", "names the column " + shortened(name) + " twice",
+                "give each column a name of its own");
   return static_cast<std::size_t>(found - columns_.begin());
 }
 

@@ -82,4 +82,16 @@ TEST(FrameTimes, ThatAreNotWholeHaveAReason) {
   for (const std::size_t trial : {2u, 3u, 4u, 5u}) EXPECT_TRUE(pilot.of(trial).intervals_s.empty());
 }
 
+TEST(FrameTimes, OfImportsMayHaveReportedOnsetsAloneAndNoEnd) {
+  RecordedPilot pilot;
+  pilot.change(
+      "UPDATE frame SET actual_display_ns = submitted_ns, submitted_ns = NULL WHERE presentation_id = 1");
+  pilot.change(
+      "UPDATE presentation SET grade = 'B', start_ns = NULL, end_ns = NULL WHERE presentation_id = 1");
+  const auto times = pilot.of(0);
+  EXPECT_EQ(times.why_not, "");
+  ASSERT_EQ(times.intervals_s.size(), 39u);
+  for (const double interval_s : times.intervals_s) EXPECT_NEAR(interval_s, 0.020000001, 1e-13);
+}
+
 }  // namespace

@@ -117,9 +117,9 @@ TEST_F(Import, RefusesWhatItWouldHaveToGuess) {
   expect_refusal(head + columns, "who,n,mean,sd,score\nAnna B.,1,10,0,3\n", "is not a participant code");
   expect_refusal(head + columns, "who,n,mean,score\nP01,1,10,3\n", "has no column sd");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,10,0\n", "t.csv:2: has 4 fields where");
-  expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,\"10,0,3\n", "t.csv:2: begins a quoted field");
+  expect_refusal(head + columns, "who,n,mean,sd,score\nP01,1,\"10,0,3\n", "t.csv:2: opens a quote");
   expect_refusal(head + columns, "who,n,mean,sd,score\nP\xE9,1,10,0,3\n", "t.csv:2: is no text in UTF-8");
-  expect_refusal(head + columns, "", "t.csv:1: is empty");
+  expect_refusal(head + columns, "", "t.csv: is empty");
   expect_refusal(head + columns, "who,n,mean,sd,score\n", "has no row that the mapping takes");
   expect_refusal(head + columns + "colour = \"red\"\n", table, "map.toml:");
   expect_refusal(head +

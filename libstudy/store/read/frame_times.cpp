@@ -35,10 +35,17 @@ FrameTimes times_of(const PlayedTrial& played, TimingGrade grade, std::int64_t s
   if (recorded == 0) return {{}, "no frame is recorded"};
   if (recorded != shown)
     return {{}, std::to_string(recorded) + " of " + std::to_string(shown) + " frames are recorded"};
-  if (std::any_of(played.frames.begin(), played.frames.end(),
-                  [&](const FrameRecord& one) { return placed_ns(one.times, grade) < 0; }))
-    return {{}, "the time of a frame is not recorded"};
+  const auto each = [&](const auto& has_time) {
+    return std::all_of(played.frames.begin(), played.frames.end(), has_time);
+  };
+  const bool reported = grade == TimingGrade::Photodiode || grade == TimingGrade::DisplayFeedback;
+  const auto is_placed = [&](const FrameRecord& one) { return placed_ns(one.times, grade) >= 0; };
+  const auto is_shown = [&](const FrameRecord& one) { return one.times.actual_display_ns >= 0; };
+  if (!each(is_placed) && !(reported && each(is_shown))) return {{}, "the time of a frame is not recorded"};
   FrameTimes out{realised_intervals(played, grade), ""};
+  // Imported frames may lack the end of the last one.
+  if (played.end_ns < 0) out.intervals_s.pop_back();
+  if (out.intervals_s.empty()) return {{}, "a single frame without its end is recorded"};
   if (*std::min_element(out.intervals_s.begin(), out.intervals_s.end()) > 0) return out;
   return {{}, "the onsets do not ascend"};
 }

@@ -19,7 +19,8 @@ struct FrameTimes {
 
 /// The first stimulus of each trial that was played, by TaskSession::uid and TaskTrial::position. The showing
 /// is that of TaskTrial::first, and the intervals are realised_intervals() of its frames, by the grade of its
-/// evidence. There are no frame times if the record lacks a frame or its time, or if onsets do not ascend.
+/// evidence, without the last frame if its end is not recorded (imported trials). There are no frame times if
+/// the record lacks a frame or its time, or if onsets do not ascend.
 /// base::Error as read_tasks().
 std::map<std::pair<std::string, int>, FrameTimes> read_frame_times(const StudyFile& file,
                                                                    const std::string& protocol_sha256);

@@ -58,8 +58,7 @@ TEST_F(Csv, SeparatorIsThatOfTheFirstLine) {
 TEST_F(Csv, ErrorsNameTheLine) {
   EXPECT_THAT(refusal(""), HasSubstr("is empty"));
   EXPECT_THAT(refusal("a,b\n1,2\n\n1\n"), HasSubstr("table.csv:4: has 1 fields where 2 belong"));
-  EXPECT_THAT(refusal("a,a\n"), HasSubstr("names the column a twice"));
-  EXPECT_THAT(refusal("a,\n"), HasSubstr("column 2 no name"));
+  EXPECT_THAT(refusal("a,\n1,2\n"), HasSubstr("table.csv:2: has 2 fields where 1 belong"));
   EXPECT_THAT(refusal("a\n\"x\n"), HasSubstr("table.csv:2: opens a quote"));
   EXPECT_THAT(refusal("a,b\n\"x\"y,2\n"), HasSubstr("after a closing quote"));
   EXPECT_THAT(refusal("a\nb\n\xE4\n"), HasSubstr("table.csv:3: is no text in UTF-8"));
@@ -71,6 +70,20 @@ TEST_F(Csv, ErrorsNameTheLine) {
   } catch (const base::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("the nearest is \"person\""));
   }
+}
+
+TEST_F(Csv, ANameThatColumnsShareIsRefusedWhenItIsUsed) {
+  const auto table = read("a,b,a\n1,2,3\n");
+  EXPECT_EQ(table.column("b"), 1u);
+  EXPECT_THAT([&] { static_cast<void>(table.find("a")); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("names the column a twice")));
+}
+
+TEST_F(Csv, SeparatorsAtTheEndsOfLinesMakeNoColumn) {
+  const auto table = read("a,b,\n1,2,\n3,4\n");
+  EXPECT_THAT(table.columns(), ElementsAre("a", "b"));
+  EXPECT_THAT(table.rows()[0].fields, ElementsAre("1", "2"));
+  EXPECT_THAT(table.rows()[1].fields, ElementsAre("3", "4"));
 }
 
 }  // namespace
