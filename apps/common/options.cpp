@@ -144,8 +144,11 @@ CLI::Validator output_folder() {
 }
 
 void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs) {
-  std::map<std::filesystem::path, std::string> taken{
-      {std::filesystem::weakly_canonical(database), "the database"}};
+  const std::filesystem::path file = std::filesystem::weakly_canonical(database);
+  std::map<std::filesystem::path, std::string> taken{{file, "the database"}};
+  if (!database.empty())
+    for (const char* end : {"-wal", "-shm", "-journal", ".answers.jsonl", ".personal"})
+      taken[file.string() + end] = "a file of the database";
   for (const auto& [option, path] : outputs) {
     if (path.empty()) continue;
     const auto [other, added] =

@@ -134,8 +134,10 @@ void print_scale(const study::Json& json, const study::Json& scale, const std::s
     std::printf("bias towards the condition shown first: %s JOD, standard error %s\n",
                 decimals(order.at("jod"), 2).c_str(), decimals(order.at("se"), 2).c_str());
   if (const study::Json& rating = scale.at("rating"); rating.is_object())
-    std::printf("ratings rise by %s of their standard deviation a JOD, standard error %s\n",
-                decimals(rating.at("slope"), 2).c_str(), decimals(rating.at("se"), 2).c_str());
+    std::printf(
+        "ratings rise by %s of their standard deviation a JOD, standard error %s%s\n",
+        decimals(rating.at("slope"), 2).c_str(), decimals(rating.at("se"), 2).c_str(),
+        rating.at("slope").get<double>() < 0 ? "; below 0, ratings and choices contradict each other" : "");
   if (scale.at("next").empty()) return;
   std::printf("pairs to ask next, with the gain of one more answer:\n");
   for (const auto& one : scale.at("next"))

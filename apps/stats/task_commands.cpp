@@ -191,9 +191,7 @@ void print_results(const study::Json& json, study::TaskKind task) {
 }
 
 void run(const TaskCommand& command) {
-  if (!command.json.empty() &&
-      std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
-    throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
+  check_apart(command.database, {{"--json", command.json}});
   if (command.choice.level)
     throw base::Error("--level", std::string("does not apply to ") + study::task_name(command.task),
                       "leave it out: it applies to the curve of a pilot");

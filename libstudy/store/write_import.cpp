@@ -1,5 +1,8 @@
 /// Function of Store that writes imported sessions.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "libstudy/store/export_labels.hpp"
@@ -62,6 +65,9 @@ SessionPlan plan_of(const Protocol& protocol, const ImportedSession& session, co
   return plan;
 }
 
+/// Relative error of the length of a frame log from which on its trial fails.
+constexpr double most_length_error = 0.05;
+
 /// Timing of a trial with a frame log. A pattern of intervals, such as hitches, is described, not judged: two
 /// moments do not decide whether it was shown.
 TimingVerdict verdict_of_log(const Protocol& protocol, const ImportedTrial& trial,
@@ -69,7 +75,14 @@ TimingVerdict verdict_of_log(const Protocol& protocol, const ImportedTrial& tria
   const FpsSetting& setting = protocol.design.cells.at(static_cast<std::size_t>(trial.cell)).setting;
   const TimingGrade grade = grade_of_log(*trial.frames);
   if (setting.mean <= 0 || has_pattern(setting)) return describe_trial(played, grade);
-  return judge_trial(setting, protocol.pacing, played, protocol.timing, grade);
+  TimingVerdict out = judge_trial(setting, protocol.pacing, played, protocol.timing, grade);
+  const double logged_s = 1e-9 * static_cast<double>(played.end_ns);
+  if (std::abs(logged_s - setting.duration_s) > most_length_error * setting.duration_s) {
+    out.verdict = Verdict::Fail;
+    out.reason += (out.reason.empty() ? "" : "; ") +
+                  fmt::format("the log lasts {:.4g} s, the trial {:.4g} s", logged_s, setting.duration_s);
+  }
+  return out;
 }
 
 std::optional<std::int64_t> known_ns(std::int64_t time_ns) {

@@ -279,8 +279,10 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   check_new_code(*database_, plan.participant);
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind_all(plan.participant).step()) {
-    throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
-                      "give another code: this code stays with the person who withdrew");
+    throw base::Error(
+        path_.string(), "participant " + plan.participant + " withdrew from this study",
+        "leave this person out, or give another code if it is another person: the code stays with "
+        "the person who withdrew");
   }
 }
 

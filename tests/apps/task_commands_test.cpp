@@ -118,6 +118,8 @@ TEST_F(TaskCommandsE2e, BadInputIsNamedAndNothingIsWritten) {
   refuse("task1", "database");
   refuse("task1 " + (*folder_ / "missing.db").string() + " --json " + json, "missing.db");
   refuse("task1 " + database + " --json " + database, "is the database");
+  refuse("task1 " + database + " --json " + database + ".answers.jsonl", "is a file of the database");
+  refuse("task1 " + database + " --json " + database + "-wal", "is a file of the database");
   refuse("task1 " + database + " --protocol ffff --json " + json, "ffff");
   refuse("task1 " + database + " --plan " + database + " --json " + json, "study.db");
   EXPECT_FALSE(fs::exists(json));

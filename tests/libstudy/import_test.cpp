@@ -208,6 +208,18 @@ TEST_F(Import, FramesGiveAVerdictAndTheirAbsenceGivesNone) {
   expect_refusal(head + columns + "[frames]\nfile = \"log_{n}.csv\"\n", table, "t.csv:3: has no frame log");
   write("log_2.csv", "FPS\n20\n20\n");
   expect_refusal(mapping, table, "log_2.csv");
+  fs::copy_file(folder_ / "log_1.csv", folder_ / "log_2.csv", fs::copy_options::overwrite_existing);
+  expect_refusal(mapping, table, "has the same frame log as");
+}
+
+TEST_F(Import, AFrameLogThatIsShorterThanItsTrialFails) {
+  write("log_1.csv", log_of(3, 100));
+  const std::string mapping = head + columns + "[frames]\nfile = \"log_{n}.csv\"\nmay_lack = true\n";
+  Store(folder_ / "s.db", sqlite::Open::Create)
+      .add_import(two_settings(), terms(), read(mapping, table).sessions);
+  sqlite::Connection database(folder_ / "s.db", sqlite::Open::Read);
+  EXPECT_EQ(database.text("SELECT verdict || ': ' || reason FROM presentation WHERE frames = 3"),
+            "fail: the log lasts 0.3 s, the trial 10 s");
 }
 
 TEST_F(Import, SurvivesADamagedDatabase) {

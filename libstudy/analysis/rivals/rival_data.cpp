@@ -110,7 +110,11 @@ std::string why_no_comparison(const RivalData& data, std::string& mend) {
       return reason.empty() ? "no trial has an answer to '" + data.task.question.id + "'" : reason;
     }
     mend = "the models need the times of all frames, which a session records; take a database that has them";
-    return "no analysed answer has frame times: " + data.without_frames.begin()->first;
+    const int simulated = data.task.flow.simulated_left_out;
+    return "no analysed answer has frame times: " + data.without_frames.begin()->first +
+           (simulated > 0 ? "; " + std::to_string(simulated) +
+                                " sessions of simulated observers are left out, as there are people"
+                          : "");
   }
   if (data.settings.size() < 2) {
     mend = "compare models on trials of several timings";

@@ -41,7 +41,8 @@ TimingPredictor predictor_of(const std::string& name, const std::string& option)
   for (std::size_t i = 0; i < predictor_table.size(); ++i)
     if (name == predictor_table[i].name) return static_cast<TimingPredictor>(i);
   throw base::Error(option, "'" + name + "' is no model",
-                    "write names of " + known_models() + ", separated by commas, or two joined by '+'");
+                    "write names of " + known_models() +
+                        ", separated by commas, or two of them other than ptpe joined by '+'");
 }
 
 TimingModel model_of(const std::string& name, const std::string& option) {

@@ -41,7 +41,8 @@ bool ascends(const std::vector<Presented>& frames, bool with_onsets) {
 std::vector<Presented> frames_of(Connection& database, std::int64_t showing) {
   std::vector<Presented> out;
   Statement row(database,
-                "SELECT start_ns + scheduled_ns + submitted_ns, start_ns + scheduled_ns + actual_display_ns "
+                "SELECT coalesce(start_ns, 0) + scheduled_ns + submitted_ns, "
+                "coalesce(start_ns, 0) + scheduled_ns + actual_display_ns "
                 "FROM frame JOIN presentation USING (presentation_id) WHERE presentation_id = ? "
                 "ORDER BY frame_index");
   for (row.bind_all(showing); row.step();) {

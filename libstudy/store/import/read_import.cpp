@@ -155,7 +155,16 @@ ReadImport read_import(const Protocol& protocol, const ImportMapping& mapping,
     out.sources.push_back(TableReader(protocol, mapping, asked, table, visits).read());
   }
   std::string person, first;
+  std::map<std::string, std::string> logs;  // places of the trials, by the hash of their frame log
   for (auto& [key, visit] : visits) {
+    for (const auto& [order, trial] : visit.trials) {
+      if (!trial.trial.frames) continue;
+      const auto [same, fresh] = logs.try_emplace(trial.trial.frames_sha256, trial.place);
+      if (!fresh)
+        throw base::Error(
+            trial.place, "has the same frame log as " + same->second,
+            "name the log of each trial: write {COLUMN} in `file` of [frames] for what differs");
+    }
     check_trials(protocol, mapping, visit);
     if (key.first != person) first = visit.session.source_sha256;
     person = key.first;
