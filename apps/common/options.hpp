@@ -63,8 +63,8 @@ CLI::Validator output_file();
 /// Accepts folders in which files can be written; otherwise base::Error (base::check_output_folder).
 CLI::Validator output_folder();
 
-/// base::Error if an output would overwrite the database, a file that belongs to it, or another output. `outputs`: path by option; an
-/// empty path is skipped.
+/// base::Error if an output would overwrite the database, a file that belongs to it, or another output.
+/// `outputs`: path by option; an empty path is skipped.
 void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs);
 
 /// Throws CLI::ValidationError naming the first argument that is not one plain line of UTF-8
