@@ -1,4 +1,4 @@
-/// vip-study certify: the timing certificate of frame logs of other programs.
+/// vip-study certify: prints a timing certificate for frame logs that other programs recorded.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

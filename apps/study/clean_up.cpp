@@ -34,6 +34,8 @@ void withdraw_and_tell(const std::filesystem::path& database, const std::string&
   print_clean_up(done.beside);
   print_list("Recorded at these stations: withdraw in their own databases, or merge this one into them:",
              done.deleted.stations);
+  print_list("Imported from these files, which still hold the answers: delete them by hand:",
+             done.deleted.sources);
   study::check_nothing_left(database, done.beside.left);
 }
 

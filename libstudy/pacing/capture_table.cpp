@@ -141,7 +141,8 @@ void CaptureTable::fail(const std::string& problem) const {
        "of frame times in ms");
 }
 
-/// The next line that is not blank, without a byte-order mark and the line end; false at the end.
+/// Sets `line` to the next line that is not blank, without its line end, and without a byte-order mark at the
+/// beginning of the file. Returns false at the end of the file.
 bool CaptureTable::next_line(std::string& line) {
   while (std::getline(lines_, line)) {
     if (++number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);

@@ -171,7 +171,7 @@ class Store {
   /// two protocols is test data.
   std::int64_t add_run(const RunPlan& run);
 
-  /// Writes sessions that another program recorded, with their answers and frames, in one transaction. The
+  /// Stores sessions that another program recorded, with their answers and frames, in one transaction. The
   /// protocol has one stimulus block and no pairs. base::Error, with nothing stored, as add_run(), and if the
   /// database holds a session of the same source or a participant with the same code.
   void add_import(const Protocol& protocol, const ImportTerms& terms,

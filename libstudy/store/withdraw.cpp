@@ -48,9 +48,15 @@ Stock take_stock(Connection& database, const std::string& person) {
                        "SELECT count(*) FROM frame JOIN presentation USING (presentation_id) "
                        "JOIN trial USING (trial_id) JOIN session USING (session_id) WHERE person = ?",
                        person);
-  Statement row(database,
-                "SELECT DISTINCT station FROM session WHERE person = ? AND station <> '' ORDER BY 1");
+  Statement row(
+      database,
+      "SELECT DISTINCT station FROM session WHERE person = ? AND station <> '' AND imported_from IS "
+      "NULL ORDER BY 1");
   for (row.bind_all(person); row.step();) stock.stations.push_back(row.text(0));
+  Statement source(database,
+                   "SELECT DISTINCT imported_from || ', SHA-256 ' || source_sha256 FROM session "
+                   "WHERE person = ? AND imported_from IS NOT NULL ORDER BY 1");
+  for (source.bind_all(person); source.step();) stock.sources.push_back(source.text(0));
   return stock;
 }
 

@@ -16,6 +16,8 @@ namespace study {
 struct Stock {
   std::int64_t sessions = 0, answers = 0, frames = 0;
   std::vector<std::string> stations;  ///< stations of the sessions; the databases there stay unchanged
+  /// Program and SHA-256 of each file from which sessions were imported; the files stay unchanged.
+  std::vector<std::string> sources = {};
 };
 
 /// The result of a withdrawal, with the files that the experimenter must handle.

@@ -16,8 +16,8 @@ struct MixedGradient {
   double lapse = 0;  ///< derivative for the lapse rate
 };
 
-/// Guesses among the answers: with probability `rate` a rating is one of `choices` scores, each equally
-/// likely. P(rating) = (1 - rate) P(rating | attentive) + rate / choices.
+/// Lapses of attention: with probability `rate` a person guesses, and each of the `choices` scores is then
+/// equally likely. P(rating) = (1 - rate) P(rating | attentive) + rate / choices.
 struct Lapses {
   double rate = 0;  ///< 0 to below 1
   int choices = 1;  ///< number of scores on the scale, at least 1
@@ -40,8 +40,8 @@ class MixedLikelihood {
   /// Log-likelihood and its gradient. -infinity if a rating has probability zero, the thresholds do not
   /// ascend or sd is not finite; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the
   /// likelihood is the same for sd and -sd. Not thread-safe: each call starts from the modes that the
-  /// previous call found. With lapses the integrand need not be log-concave; its scale is then held to at
-  /// most 1, the scale of the effects themselves.
+  /// previous call found. With lapses the integrand need not be log-concave. The quadrature's scale is
+  /// then at most 1, the standard deviation of u.
   double evaluate(std::span<const double> thresholds, std::span<const double> location, double sd,
                   MixedGradient& gradient, const Lapses& lapses = {});
   /// Log-likelihood of each participant at the last evaluate() that was finite.

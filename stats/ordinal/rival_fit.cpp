@@ -89,7 +89,8 @@ struct RivalFitter::Parts {
   std::size_t coefficients() const { return model.linear ? width() : width() + 1; }
   bool estimates_lapse() const { return !options.lapse; }
 
-  /// The lapse rate of the parameter t; t = 0 is the least rate. slope: its derivative.
+  /// The lapse rate as a function of the parameter t that the minimiser varies; t = 0 gives the least rate.
+  /// Sets `slope` to the derivative of the rate for t.
   double lapse_of(double t, double& slope) const {
     if (options.lapse) {
       slope = 0;

@@ -253,7 +253,10 @@ TEST_F(Import, IsAllOrNothing) {
 TEST_F(Import, APersonWhoWithdrewDoesNotComeBack) {
   const ReadImport all = read(head + columns, table + "P02,1,10,0,3\nP02,2,20,0,5\n");
   Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions);
-  withdraw(folder_ / "s.db", "P01");
+  const Withdrawal done = withdraw(folder_ / "s.db", "P01");
+  EXPECT_TRUE(done.deleted.stations.empty());
+  ASSERT_EQ(done.deleted.sources.size(), 1u);
+  EXPECT_EQ(done.deleted.sources[0], "Own tool, SHA-256 " + all.sessions.at(0).source_sha256);
   const std::vector<ImportedSession> again{all.sessions.at(0)};
   EXPECT_THROW(Store(folder_ / "s.db", sqlite::Open::Write).add_import(two_settings(), terms(), again),
                base::Error);

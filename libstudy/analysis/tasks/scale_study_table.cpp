@@ -167,7 +167,8 @@ std::vector<ScaledTrial> trials_for_scale(const TaskData& data) {
   return out;
 }
 
-/// Names conditions by the attributes that vary, without the one that parts the answers.
+/// Names each condition by the values of the attributes that differ between conditions. Leaves out the
+/// attribute `by`, since each of its values has a scale of its own.
 class ConditionNames {
  public:
   ConditionNames(const std::vector<ScaledTrial>& trials, std::string by) : by_(std::move(by)) {

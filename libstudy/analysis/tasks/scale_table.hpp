@@ -42,8 +42,8 @@ class ScaleCollector {
                   const std::string& second, bool first_chosen, double count);
   void add_rating(const std::string& group, const std::string& person, const std::string& condition,
                   int score, double count);
-  /// Moves what was collected into the table. `place`: for messages. base::Error for too many conditions or
-  /// scores.
+  /// Moves the choices and ratings that were added into `table`. base::Error that names `place` if there are
+  /// too many conditions or different scores.
   void finish(ScaleTable& table, const std::string& place);
 
  private:
@@ -62,10 +62,12 @@ class ScaleCollector {
   std::vector<Part> parts_;
 };
 
-/// Reads CSV files. Columns of `choices`: first, second (names of conditions in the order of showing), chosen
-/// ("first", "second" or the condition's name); of `ratings`: condition, score (a whole number). Both may
-/// have person (equal texts are one person), count (equal answers in one row; 1 without), and `by`. An empty
-/// `ratings` is no file. Without a column person in each file the people are not known, which is a warning.
+/// Reads choices, and ratings unless `ratings` is empty, from CSV files. The file of choices has the columns
+/// "first" and "second" (names of the two conditions in the order in which they were shown) and "chosen"
+/// ("first", "second" or a condition's name). The file of ratings has "condition" and "score" (a whole
+/// number). Both may have "person" (equal texts are one person), "count" (how many equal answers a row stands
+/// for; 1 if it is missing) and the column that `by` names. If a file lacks "person", the people are not
+/// known, and the table gets a warning.
 /// base::Error at file:line.
 ScaleTable scale_table_of_csv(const std::filesystem::path& choices, const std::filesystem::path& ratings,
                               const std::string& by);

@@ -15,10 +15,11 @@ namespace study {
 /// many showings they are and how many were left out.
 ///
 /// The columns are presentmon_columns(). Other columns of PresentMon are not known. MsBetweenDisplayChange is
-/// only written if the display reported the onset of each frame. Under grade D (submit), the last row of a
-/// showing that was not interrupted is the picture that replaced the last frame. The intervals are then those
-/// of the showing's certificate. Under the other grades the last frame has no interval, because the database
-/// has no time of its end that is of the same kind as the other times.
+/// only written if the display reported the onset of each frame. Under grade D (times of submission alone),
+/// and if the showing was not interrupted, the last row stands for the picture that replaced the last frame.
+/// The last frame then has an interval too, as in the showing's certificate. Under the other grades the last
+/// frame has no interval, because the database has no time of its end that is of the same kind as the other
+/// times.
 ExportedFile write_presentmon(sqlite::Connection& database, const ExportDraft& draft);
 
 /// The columns of the files, with their meanings.
