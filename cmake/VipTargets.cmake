@@ -138,8 +138,8 @@ function(vip_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# vip_test_units(TARGET [EACH n] [APART sources...]) compiles the *_test.cpp files of each folder in units of
-# up to n files (default: 24), which unit.cmake writes. Unlike the sources of vip_unity(), these files may
+# vip_test_units(TARGET [APART sources...]) compiles the *_test.cpp files of each folder in units of
+# up to 24 files, which unit.cmake writes. Unlike the sources of vip_unity(), these files may
 # define equal names. A source with compile options of its own is compiled separately. List after APART each
 # source that defines something that a header declares, such as a printer for GoogleTest. Call
 # vip_test_units() after the properties of the sources are set.
@@ -147,10 +147,8 @@ function(vip_test_units target)
   if(NOT VIP_UNITY OR NOT TARGET ${target})
     return()
   endif()
-  cmake_parse_arguments(arg "" "EACH" "APART" ${ARGN})
-  if(NOT arg_EACH)
-    set(arg_EACH 24)
-  endif()
+  cmake_parse_arguments(arg "" "" "APART" ${ARGN})
+  set(most 24)
   set(apart)
   foreach(source IN LISTS arg_APART)
     get_filename_component(source ${source} ABSOLUTE)
@@ -174,7 +172,7 @@ function(vip_test_units target)
   foreach(group IN LISTS groups)
     # Divides the sources evenly: nine sources become units of four and five sources.
     list(LENGTH sources_${group} count)
-    math(EXPR units "(${count} + ${arg_EACH} - 1) / ${arg_EACH}")
+    math(EXPR units "(${count} + ${most} - 1) / ${most}")
     if(count EQUAL 1)
       continue()
     endif()

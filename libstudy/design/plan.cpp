@@ -33,17 +33,22 @@ const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& gr
   return design.cells[static_cast<std::size_t>(group.front())].stimulus;
 }
 
-/// Of all n_* (sizes of the fluid) in `groups`: how often the most frequent one occurs in a sequence of
-/// groups minus how often the least frequent one does, perhaps 0 times.
-int unevenness(const Design& design, const std::vector<std::vector<int>>& groups,
-               const std::vector<int>& sequence) {
-  std::map<std::string, int> count;
-  for (const auto& group : groups) count[stimulus_of(design, group).n_star] = 0;
-  for (const int index : sequence)
-    ++count[stimulus_of(design, groups[static_cast<std::size_t>(index)]).n_star];
-  const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };
-  const auto [least, most] = std::minmax_element(count.begin(), count.end(), less);
-  return most->second - least->second;
+/// For each group the number of its n_* (size of the fluid): 0 for the first n_*, 1 for the next other one.
+std::vector<std::size_t> n_star_numbers(const Design& design, const std::vector<std::vector<int>>& groups) {
+  std::map<std::string, std::size_t> number;
+  std::vector<std::size_t> out;
+  for (const auto& group : groups)
+    out.push_back(number.emplace(stimulus_of(design, group).n_star, number.size()).first->second);
+  return out;
+}
+
+/// Of all n_* in `n_star`, which holds the number of each group's n_*: how often the most frequent one occurs
+/// in a sequence of groups minus how often the least frequent one does, perhaps 0 times.
+int unevenness(const std::vector<std::size_t>& n_star, const std::vector<int>& sequence) {
+  std::vector<int> count(1 + *std::max_element(n_star.begin(), n_star.end()));
+  for (const int index : sequence) ++count[n_star[static_cast<std::size_t>(index)]];
+  const auto [least, most] = std::minmax_element(count.begin(), count.end());
+  return *most - *least;
 }
 
 void extend(const Design& design, const std::vector<std::vector<int>>& groups, std::vector<int>& sequence,
@@ -72,9 +77,10 @@ std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   std::vector<int> sequence;
   extend(design, groups, sequence, out);
   if (!even) return out;
-  int best = unevenness(design, groups, out.front());
-  for (const auto& one : out) best = std::min(best, unevenness(design, groups, one));
-  std::erase_if(out, [&](const auto& one) { return unevenness(design, groups, one) > best; });
+  const auto n_star = n_star_numbers(design, groups);
+  int best = unevenness(n_star, out.front());
+  for (const auto& one : out) best = std::min(best, unevenness(n_star, one));
+  std::erase_if(out, [&](const auto& one) { return unevenness(n_star, one) > best; });
   return out;
 }
 

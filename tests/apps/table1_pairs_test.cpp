@@ -54,7 +54,7 @@ class CheckpointFile : public ::testing::Test {
   }
   std::string path() const { return folder_ / measure::checkpoint_name(of_); }
 
-  const ::test::TemporaryFolder folder_{::test::memory_folder()};
+  const ::test::TemporaryFolder folder_;
   const measure::Checkpoint checkpoint_ = small_checkpoint();
   const measure::CheckpointOf of_{"Pond", std::string(64, 'a'), 64, 60, {2, 1}};
 };

@@ -4,23 +4,28 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
 namespace test {
 
-/// A folder in memory for tests that write thousands of files, or else the usual temporary folder.
-inline std::filesystem::path memory_folder() {
+/// Folder of the tests' files: in memory, where writing does not wait for a disk, if 2 GiB are free there, or
+/// else the usual temporary folder.
+inline std::filesystem::path usual_folder() {
   const std::filesystem::path memory = "/dev/shm";
-  return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
+  std::error_code problem;
+  const auto space = std::filesystem::space(memory, problem);
+  const bool large = !problem && space.available >= std::uintmax_t{2} << 30;
+  return large && ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
 }
 
 /// A new folder in `where`. The destructor removes it with its contents, and makes its folders writable if it
 /// must.
 class TemporaryFolder {
  public:
-  explicit TemporaryFolder(const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
+  explicit TemporaryFolder(const std::filesystem::path& where = usual_folder()) {
     std::string name = (where / "vip-test-XXXXXX").string();
     if (!::mkdtemp(name.data()))
       throw std::runtime_error("cannot make the folder " + name +

@@ -72,7 +72,7 @@ std::string cause_of(const std::string& line) {
 }  // namespace
 
 long try_crashes(const CrashOptions& options) {
-  const ::test::TemporaryFolder folder(::test::memory_folder());
+  const ::test::TemporaryFolder folder;
   const auto& all = all_commands();
   std::map<std::string, Row> rows;
   std::map<std::string, std::pair<long, std::string>> causes;

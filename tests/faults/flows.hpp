@@ -28,7 +28,7 @@ struct Flow {
   std::string played;
   /// If only every n-th call is tried, a flow gets one in `share` kinds of faults, and adjacent flows get
   /// different kinds.
-  int share = 1;
+  int share = 2;
 };
 
 /// Folder of this program, which has the programs under test.

@@ -116,7 +116,7 @@ std::vector<Step> shrink(std::vector<Step> steps, const fs::path& folder, const 
 }
 
 long try_histories(const HistoryOptions& options) {
-  const ::test::TemporaryFolder folder(::test::memory_folder());
+  const ::test::TemporaryFolder folder;
   std::map<std::string, long> kinds;
   long failed = 0, commands = 0, histories = 0;
   const auto take = [&](const std::string& line) {

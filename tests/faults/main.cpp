@@ -138,18 +138,18 @@ void try_kills(const Options& options, const fs::path& folder, Table& table) {
   if (!disks) std::printf("no small file systems here (not root): full disks are injected calls alone\n");
   side_by_side(options.jobs, table, [&](int worker) {
     std::vector<const Flow*> flows;
-    std::vector<std::unique_ptr<Bench>> benches;
-    for (const Flow& flow : all_flows()) {
-      if (!chosen(options, flow.name)) continue;
-      flows.push_back(&flow);
-      benches.push_back(std::make_unique<Bench>(flow, folder / std::to_string(worker) / flow.name));
-    }
+    for (const Flow& flow : all_flows())
+      if (chosen(options, flow.name)) flows.push_back(&flow);
+    std::vector<std::unique_ptr<Bench>> benches(flows.size());  // prepared when first needed
     std::mt19937 random(options.seed * 1000 + static_cast<unsigned>(worker));
     const auto below = [&](long n) {
       return 1 + static_cast<long>(random() % static_cast<unsigned long>(n));
     };
     for (std::size_t i = 0; table.kills() < options.count && table.failures() < 40; ++i) {
-      Bench& bench = *benches[i % benches.size()];
+      const Flow& flow = *flows[i % flows.size()];
+      auto& prepared = benches[i % flows.size()];
+      if (!prepared) prepared = std::make_unique<Bench>(flow, folder / std::to_string(worker) / flow.name);
+      Bench& bench = *prepared;
       Fault fault;
       switch (random() % 8) {
         case 0:
@@ -167,7 +167,7 @@ void try_kills(const Options& options, const fs::path& folder, Table& table) {
           break;
       }
       if (fault.kind == Kind::SmallDisk) fault.at *= 4096;
-      table.add(flows[i % flows.size()]->name + ", " + name_of(fault.kind), bench.attempt(fault));
+      table.add(flow.name + ", " + name_of(fault.kind), bench.attempt(fault));
     }
   });
 }
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
     sub->add_option("--flow", options.flows, "This command only; may be repeated");
   CLI11_PARSE(app, argc, argv);
   if (in_library) return in_library() == 0 ? 0 : 1;
-  const ::test::TemporaryFolder folder(::test::memory_folder());
+  const ::test::TemporaryFolder folder;
   Table table;
   work(options, folder.path(), table);
   table.print();

@@ -24,7 +24,7 @@ struct Frozen {
     for (const char* name : names) files[name] = base::read_file(path / name, 1 << 20);
     protocol = study::read_protocol(base::resource("protocols/task2.toml")).sha256;
   }
-  test::TemporaryFolder folder{test::memory_folder()};
+  test::TemporaryFolder folder;
   fs::path path = folder / "bundle";
   std::map<std::string, std::string> files;
   std::string protocol;

@@ -15,7 +15,7 @@
 namespace fs = std::filesystem;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::TemporaryFolder folder(test::memory_folder());
+  static const test::TemporaryFolder folder;
   const fs::path file = folder / "study.db";
   for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
   const std::string bytes(reinterpret_cast<const char*>(data), size);

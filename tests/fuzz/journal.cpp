@@ -24,7 +24,7 @@ void write(const fs::path& path, const std::string& bytes) {
 
 /// A database of the current schema with answers, upgraded only once for all inputs.
 std::string whole_database() {
-  const test::TemporaryFolder folder(test::memory_folder());
+  const test::TemporaryFolder folder;
   const fs::path path = folder / "s.db";
   write(path, base::read_file(base::resource("tests/libstudy/fixtures/study_v2.db"), 1 << 24));
   study::Store(path, study::sqlite::Open::Write);
@@ -39,7 +39,7 @@ std::int64_t answers_in(const fs::path& database) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::TemporaryFolder folder(test::memory_folder());
+  static const test::TemporaryFolder folder;
   static const std::string whole = whole_database();
   for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
   const fs::path database = folder / "s.db";

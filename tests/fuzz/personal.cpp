@@ -11,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;
-  static const test::TemporaryFolder folder(test::memory_folder());
+  static const test::TemporaryFolder folder;
   for (const auto& entry : fs::directory_iterator(folder.path())) fs::remove(entry.path());
   if (std::FILE* out = std::fopen((folder / "s.db.personal").c_str(), "wb")) {
     if (size > 0) std::fwrite(data, 1, size, out);  // libFuzzer's empty input is a null pointer

@@ -11,7 +11,7 @@
 namespace fs = std::filesystem;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::TemporaryFolder folder(test::memory_folder());
+  static const test::TemporaryFolder folder;
   static const fs::path sound = [] {
     const fs::path path = folder / "sound.db";
     fs::copy_file(base::resource("tests/libstudy/fixtures/study_v4.db"), path);

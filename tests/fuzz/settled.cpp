@@ -28,7 +28,7 @@ void read(const std::filesystem::path& folder, const std::string& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const test::TemporaryFolder folder(test::memory_folder());
+  static const test::TemporaryFolder folder;
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   read(folder.path(), bytes);
   read(folder.path(), base::sha256_hex(bytes) + bytes);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr int most_seconds = 10;
 
 void attack_many(std::uint64_t first_seed, int count) {
-  const test::TemporaryFolder folder(::test::memory_folder());
+  const test::TemporaryFolder folder;
   const fs::path sound = folder / "sound.db";
   test::write_small_study(sound);
   std::set<std::string> made;
@@ -55,7 +55,7 @@ void set_texts(const fs::path& path, const std::string& table) {
 }
 
 TEST(DatabaseGrammar, TextsThatAreNotUtf8EndNoCommandUnsaid) {
-  const test::TemporaryFolder folder(::test::memory_folder());
+  const test::TemporaryFolder folder;
   const fs::path sound = folder / "sound.db";
   test::write_small_study(sound);
   for (const auto& [key, object] : schema_of(*make_temporary_database("the schema"))) {

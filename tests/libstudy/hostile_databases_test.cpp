@@ -72,7 +72,7 @@ class HostileDatabases : public ::testing::Test {
             {"withdraw", [this] { withdraw(study, "P01"); }}};
   }
 
-  const test::TemporaryFolder folder{::test::memory_folder()};
+  const test::TemporaryFolder folder;
   const fs::path study = box("study.db"), sound = box("sound.db"), other = box("other.db");
 };
 

@@ -66,7 +66,7 @@ class OwnExports : public ::testing::Test {
     return ended.how == faults::Ended::How::Killed;
   }
 
-  test::TemporaryFolder folder{::test::memory_folder()};
+  test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", csv = folder / "csv";
   faults::CallLog log;
 };

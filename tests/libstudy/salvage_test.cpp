@@ -133,7 +133,7 @@ class Salvaging : public ::testing::Test {
     }
   }
 
-  const test::TemporaryFolder folder{::test::memory_folder()};
+  const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", into = folder / "new.db";
   std::vector<std::string> truth, lines;
   std::string bytes, journal;
