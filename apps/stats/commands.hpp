@@ -9,6 +9,7 @@ namespace apps {
 
 void add_compare_models_command(CLI::App& app);
 void add_fit_ptpe_command(CLI::App& app);
+void add_fit_people_command(CLI::App& app);
 /// Adds task1 and task2.
 void add_task_commands(CLI::App& app);
 void add_report_command(CLI::App& app);

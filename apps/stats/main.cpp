@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
   const auto app = apps::new_program("Statistics of ViP-Lab studies", "vip-stats");
   apps::add_fit_ptpe_command(*app);
+  apps::add_fit_people_command(*app);
   apps::add_compare_models_command(*app);
   apps::add_task_commands(*app);
   apps::add_report_command(*app);

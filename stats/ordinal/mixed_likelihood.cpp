@@ -1,15 +1,10 @@
 #include "stats/ordinal/mixed_likelihood.hpp"
 
-#include <gsl/gsl_integration.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <new>
-#include <numbers>
 #include <stdexcept>
 
-#include "stats/gsl_errors.hpp"
+#include "stats/ordinal/gauss_hermite.hpp"
 
 namespace stats {
 
@@ -36,6 +31,12 @@ ByLapse by_lapse(const CategoryTerm& t, const Lapses& lapses) {
 }
 
 }  // namespace
+
+double lapse_rate(double root, double least, double& slope) {
+  const double s = 1 + root * root, range = largest_lapse - least;
+  slope = range * 2 * root / (s * s);
+  return least + range * root * root / s;
+}
 
 CategoryTerm with_lapses(const CategoryTerm& attentive, const Lapses& lapses) {
   const double likely = (1 - lapses.rate) * std::exp(attentive.log_p);
@@ -95,7 +96,6 @@ struct MixedLikelihood::Place {
 MixedLikelihood::MixedLikelihood(std::span<const int> category, std::span<const int> participant, Link link,
                                  int points)
     : category_(category.begin(), category.end()), link_(link) {
-  use_gsl_codes();
   if (points < 1 || category.size() != participant.size() || category.empty()) {
     throw std::invalid_argument(
         "MixedLikelihood: no rows, not one participant for each, or no nodes; give both columns one length "
@@ -104,17 +104,9 @@ MixedLikelihood::MixedLikelihood(std::span<const int> category, std::span<const 
   groups_.resize(static_cast<std::size_t>(*std::max_element(participant.begin(), participant.end())) + 1);
   for (std::size_t i = 0; i < participant.size(); ++i)
     groups_[static_cast<std::size_t>(participant[i])].rows.push_back(i);
-  const std::unique_ptr<gsl_integration_fixed_workspace, decltype(&gsl_integration_fixed_free)> rule(
-      gsl_integration_fixed_alloc(gsl_integration_fixed_hermite, static_cast<std::size_t>(points), 0, 1, 0,
-                                  0),
-      &gsl_integration_fixed_free);
-  if (!rule) throw std::bad_alloc();
-  for (int k = 0; k < points; ++k) {
-    const double z = gsl_integration_fixed_nodes(rule.get())[k];
-    const double w = gsl_integration_fixed_weights(rule.get())[k];
-    nodes_.push_back(std::numbers::sqrt2 * z);
-    log_weights_.push_back(std::log(w) + z * z - std::log(std::numbers::pi) / 2);
-  }
+  auto rule = gauss_hermite(points);
+  nodes_ = std::move(rule.nodes);
+  log_weights_ = std::move(rule.log_weights);
 }
 
 /// Moves group.mode to the maximum of g, the concave exponent of the integrand over the participant's effect,

@@ -23,6 +23,11 @@ struct Lapses {
   int choices = 1;  ///< number of scores on the scale, at least 1
 };
 
+inline constexpr double largest_lapse = 0.5;  ///< upper bound of a lapse rate that is estimated
+/// The lapse rate as a function of the parameter that a minimiser varies: `least` at 0, largest_lapse at
+/// infinity. `slope` receives the derivative of the rate for `root`.
+double lapse_rate(double root, double least, double& slope);
+
 /// The term of a rating that may be a guess, from the term of an attentive one: log_p and its derivatives for
 /// the location (d1, d2, d3) and the thresholds (up, up1, up2, lo, lo1, lo2). The second derivatives for the
 /// thresholds (up_up, lo_lo, up_lo) are not set.

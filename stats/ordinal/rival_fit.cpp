@@ -15,7 +15,6 @@ namespace stats {
 
 namespace {
 
-constexpr double largest_lapse = 0.5;
 constexpr double largest_rival_sd = 30;
 constexpr int scoring_points = 25;  ///< nodes of the quadrature for the score of one person
 /// A fold counts as fitted if its gradient is below this: the objective is then within about 1e-5 of its
@@ -96,9 +95,7 @@ struct RivalFitter::Parts {
       slope = 0;
       return *options.lapse;
     }
-    const double s = 1 + t * t, range = largest_lapse - options.least_lapse;
-    slope = range * 2 * t / (s * s);
-    return options.least_lapse + range * t * t / s;
+    return lapse_rate(t, options.least_lapse, slope);
   }
 
   double location(std::span<const double> b, std::span<const double> values) const {

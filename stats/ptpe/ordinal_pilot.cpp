@@ -10,6 +10,7 @@
 
 #include "stats/cholesky.hpp"
 #include "stats/minimise.hpp"
+#include "stats/ordinal/level_thresholds.hpp"
 #include "stats/ordinal/mixed_likelihood.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/quantiles.hpp"
@@ -59,43 +60,6 @@ Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* o
   return rows;
 }
 
-/// Thresholds theta_j = c + t_j. The log gaps give t_j. c is chosen so that the expected rating E over the
-/// population of participants equals `level` at location 0. `weight`, `total` and `by_sd` are terms of c's
-/// derivatives.
-struct Scale {
-  std::vector<double> theta, weight;  ///< weight: -dE/dtheta_j
-  double total = 0;                   ///< sum of the weights
-  double by_sd = 0;                   ///< dc / d sd
-};
-
-Scale scale_of(std::span<const double> log_gaps, double sd, std::span<const double> levels, double level) {
-  Scale out;
-  std::vector<double> t{0};
-  for (const double gap : log_gaps) t.push_back(t.back() + std::exp(gap));
-  const double s = std::sqrt(1 + sd * sd);
-  const auto expected = [&](double c) {
-    double e = levels[0];
-    for (std::size_t j = 0; j < t.size(); ++j)
-      e += (levels[j + 1] - levels[j]) * normal_probability(-(c + t[j]) / s);
-    return e;
-  };
-  double low = -t.back() - 40 * s, high = 40 * s;
-  for (int i = 0; i < 200 && high - low > 1e-15 * (1 + std::abs(low)); ++i) {
-    const double middle = (low + high) / 2;
-    (expected(middle) > level ? low : high) = middle;
-  }
-  const double c = (low + high) / 2;
-  double stretch = 0;
-  for (std::size_t j = 0; j < t.size(); ++j) {
-    out.theta.push_back(c + t[j]);
-    out.weight.push_back((levels[j + 1] - levels[j]) * link_value(Link::Probit, out.theta[j] / s).f / s);
-    out.total += out.weight[j];
-    stretch += out.weight[j] * out.theta[j] / s;
-  }
-  out.by_sd = stretch / out.total * sd / s;
-  return out;
-}
-
 /// Order of the parameters that follow the log gaps of the thresholds.
 enum : std::size_t { Alpha, Beta, K, M, Q, Sd, Count };
 
@@ -107,7 +71,7 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
     for (const double gap : at.first(gaps)) {
       if (std::abs(gap) > 20) return std::numeric_limits<double>::infinity();
     }
-    const auto scale = scale_of(at.first(gaps), p[Sd], rows.levels, level);
+    const auto scale = level_thresholds(at.first(gaps), p[Sd], rows.levels, level);
     std::vector<double> location(rows.n());
     for (std::size_t i = 0; i < rows.n(); ++i) {
       const double u = rows.x[i] - p[Alpha] - p[Beta] * rows.d[i];
@@ -116,16 +80,8 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
     MixedGradient slopes;
     const double value = likelihood.evaluate(scale.theta, location, p[Sd], slopes);
     std::fill(gradient.begin(), gradient.end(), 0.0);
-    // Derivatives of the log-likelihood with respect to a shift of all thresholds (shift) and of those above
-    // gap j (above). weight_above is minus the derivative of the expected rating with respect to a shift of
-    // the thresholds above gap j.
-    double shift = 0, above = 0, weight_above = 0;
-    for (const double g : slopes.thresholds) shift += g;
-    for (std::size_t j = gaps; j-- > 0;) {
-      above += slopes.thresholds[j + 1];
-      weight_above += scale.weight[j + 1];
-      gradient[j] = -std::exp(at[j]) * (above - shift * weight_above / scale.total);
-    }
+    const double shift = scale.by_gaps(at.first(gaps), slopes.thresholds, gradient.first(gaps));
+    for (double& g : gradient.first(gaps)) g = -g;
     const auto out = gradient.subspan(gaps);
     out[Sd] = -slopes.sd - shift * scale.by_sd;
     for (std::size_t i = 0; i < rows.n(); ++i) {
@@ -158,7 +114,7 @@ OrdinalPilotFit fit_of(const Minimum& best, const Rows& rows, double level) {
   OrdinalPilotFit fit;
   fit.level = level;
   fit.levels = rows.levels;
-  fit.thresholds = scale_of(std::span(best.x).first(gaps), p[Sd], rows.levels, level).theta;
+  fit.thresholds = level_thresholds(std::span(best.x).first(gaps), p[Sd], rows.levels, level).theta;
   fit.curve.b = p[Beta] / delta_unit;
   fit.curve.log_a = p[Alpha] + rows.x_mean - fit.curve.b * rows.delta_mean;
   fit.m = p[M] / delta_unit;
