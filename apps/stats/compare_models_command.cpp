@@ -140,6 +140,8 @@ void compare_models(const CompareCommand& command) {
   const auto data = study::collect_rival_data(command.file(), study, *chosen, plan.exclusions);
   if (const auto reason = study::why_no_comparison(data, mend); !reason.empty())
     throw base::Error(command.database, "no comparison: " + reason, mend);
+  if (const auto reason = study::why_not_recorded(data, models, mend); !reason.empty())
+    throw base::Error(command.database, "no comparison: " + reason, mend);
   if (command.folds > data.answers.people)
     throw base::Error("--folds " + std::to_string(command.folds),
                       "there are only " + std::to_string(data.answers.people) + " people",
@@ -173,7 +175,8 @@ void add_compare_models_command(CLI::App& app) {
   sub->add_option(
       "--models", command->models,
       "Models, separated by commas: ptpe, mean_rate, arithmetic_rate, rate_sd, frame_time_sd, p95, "
-      "p99, longest, hitches, steps, or two of these joined by '+'; without: the usual eight");
+      "p99, longest, hitches, steps, animation_error, or two of these joined by '+'; without: the usual "
+      "eight");
   add_count(*sub, "--folds", command->folds, 0, 1000,
             "Groups of people that are left out in turn; 0: each person by themselves");
   sub->add_option("--seed", command->seed, "Seed of the groups, instead of the plan's (default: 1)");

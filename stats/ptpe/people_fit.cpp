@@ -164,6 +164,15 @@ void set_spread(PeopleFit& fit, PeoplePooling& pooling, const PeopleRows& rows, 
                               z, atanh_, tanh_);
 }
 
+/// Half width of the interval of a population value that has the variance `variance`. The part of it that is
+/// the variance over people, `spread` / people, is known with people - 1 degrees of freedom, the rest much
+/// better (Satterthwaite 1946, Biometrics Bull. 2, 110-114).
+double half_width(double variance, double spread, int people, double confidence) {
+  const double share = std::min(1.0, spread / people / variance);
+  const double df = std::min(1e6, (people - 1) / (share * share));
+  return student_quantile((1 + confidence) / 2, df) * std::sqrt(variance);
+}
+
 /// The nominal deltas at which the curve lies among the frame rates shown, with reach_margin.
 std::vector<double> reached(std::span<const PilotRating> ratings, PilotMean mean, const Curve& curve) {
   std::map<double, std::array<double, 2>> shown;
@@ -261,8 +270,9 @@ Result<PeopleFit> fit_people(std::span<const PilotRating> ratings, PilotMean mea
                                       pooling.covariance(PeopleAt::Beta, PeopleAt::Beta)});
   fit.population = {middle.curve, middle.var_log_a, middle.cov,
                     middle.var_b, rows.people,      options.confidence};
-  const double t = student_quantile((1 + options.confidence) / 2, rows.people - 1);
-  const double a_half = t * std::sqrt(middle.var_log_a), b_half = t * std::sqrt(middle.var_b);
+  const auto over = in_units(rows, pooling.spread());
+  const double a_half = half_width(middle.var_log_a, over.var_log_a, rows.people, options.confidence),
+               b_half = half_width(middle.var_b, over.var_b, rows.people, options.confidence);
   fit.population.a_ci = {std::exp(middle.curve.log_a - a_half), std::exp(middle.curve.log_a + a_half)};
   fit.population.b_ci = {middle.curve.b - b_half, middle.curve.b + b_half};
   set_spread(fit, pooling, rows, z);
@@ -271,7 +281,7 @@ Result<PeopleFit> fit_people(std::span<const PilotRating> ratings, PilotMean mea
   fit.q = pooling.parameter(PeopleAt::Q);
   if (pooling.varies(PeopleAt::Drift)) {
     const double drift = pooling.parameter(PeopleAt::Drift),
-                 half = t * std::sqrt(pooling.covariance(PeopleAt::Drift, PeopleAt::Drift));
+                 half = z * std::sqrt(pooling.covariance(PeopleAt::Drift, PeopleAt::Drift));
     fit.drift = SpreadEstimate{drift, {drift - half, drift + half}};
   }
   double ignored = 0;

@@ -88,7 +88,8 @@ struct PersonContour {
 
 struct PeopleFit {
   double level = 4;
-  CurveSpread population;  ///< from the observed information, with Student's t of people - 1
+  /// From the observed information; intervals with Student's t, by Satterthwaite's degrees of freedom.
+  CurveSpread population;
   SpreadEstimate sd_log_a, sd_b, correlation;  ///< over people, at delta = 0
   double k = 0, m = 0, q = 0;                  ///< on the probit scale
   std::optional<SpreadEstimate> drift;  ///< change of L from the first to the last trial; none: not estimated

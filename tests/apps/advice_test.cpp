@@ -113,9 +113,11 @@ struct Place {
 };
 const std::vector<Place> shared_places{
     {"libstudy/analysis/task_",
-     {"vip-stats report", "vip-stats fit-ptpe", "vip-stats task1", "vip-stats task2"}},
+     {"vip-stats report", "vip-stats fit-ptpe", "vip-stats fit-people", "vip-stats task1",
+      "vip-stats task2"}},
     {"libstudy/analysis/tasks/scale_", {"vip-stats scale"}},
     {"libstudy/analysis/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
+    {"libstudy/analysis/ptpe/people_contours", {"vip-stats fit-people"}},
     {"libstudy/analysis/ptpe/", {"vip-stats fit-ptpe"}},
     {"libstudy/analysis/rivals/", {"vip-stats compare-models"}},
     {"apps/stats/compare_models_command", {"vip-stats compare-models"}},

@@ -115,6 +115,24 @@ TEST(CompareModels, SaysThatItCannotTellANestedModelApart) {
               0.02);
 }
 
+TEST(CompareModels, AnimationErrorIsAModelWhereItIsRecorded) {
+  const TemporaryFolder folder;
+  const auto path = folder / "errors.db";
+  rival_study::write(path, 8, judging_by(TimingPredictor::AnimationError, 2, -2), true,
+                     [](int trial) { return 3.0 * (trial * 7 % 11); });
+  const auto data = data_of(path);
+  const auto models = study::parse_timing_models("animation_error,mean_rate");
+  std::string mend;
+  EXPECT_EQ(study::why_not_recorded(data, models, mend), "");
+  stats::RivalComparisonOptions options;
+  options.folds = 4;
+  const auto result = study::compare_timing_models(data, models, options);
+  ASSERT_TRUE(result) << result.reason();
+  const auto json = study::compare_models_json(data, models, options, *result);
+  EXPECT_EQ(json.at("models")[0].at("name"), "animation_error");
+  EXPECT_FALSE(json.at("proposals").at("timings").empty());
+}
+
 TEST(CompareModels, ProposesTimingsThatAProtocolTakes) {
   const auto data = data_of(pilots().freezes);
   const auto models = study::parse_timing_models("longest,p95");
@@ -174,6 +192,9 @@ TEST(CompareModelsE2e, RefusesWithRemedies) {
   expect_refused(at("missing.db"), "missing.db", "");
   expect_refused(at("few.db") + " --models p95,p96", "'p96' is no model", "write names of ptpe");
   expect_refused(at("few.db") + " --question nothing", "no question 'nothing'", "--question: satisfaction");
+  expect_refused(pilots().freezes.string() + " --models animation_error,p95",
+                 "animation_error is not recorded for 210 of 210 answers",
+                 "leave animation_error out of --models");
   expect_refused(pilots().freezes.string() + " --folds 11", "there are only 10 people", "leave it out");
   expect_refused(pilots().freezes.string() + " --folds 1", "leaves nobody to fit", "2 and more");
 }

@@ -32,7 +32,9 @@ using Score = std::function<int(int person, const study::TimingPredictors&)>;
 
 /// A finished pilot of the paper's 21 settings, 2 s each. `record`: false leaves the frames out of the
 /// record.
-inline void write(const std::filesystem::path& path, int people, const Score& score, bool record = true) {
+/// `error_ms`: animation error that is recorded, by the number of the trial; none: not recorded.
+inline void write(const std::filesystem::path& path, int people, const Score& score, bool record = true,
+                  const std::function<double(int trial)>& error_ms = {}) {
   auto protocol = study::test::pilot();
   study::override_trial_seconds(protocol, 2);
   std::vector<std::string> codes;
@@ -50,12 +52,14 @@ inline void write(const std::filesystem::path& path, int people, const Score& sc
       const auto& setting = protocol.design.cells.at(static_cast<std::size_t>(unit.trial->first)).setting;
       const std::int64_t start_ns = 1'000'000'000;
       const auto played = played_exactly(study::compile_schedule(setting, protocol.pacing, 1), start_ns);
-      const auto verdict = study::judge_trial(setting, protocol.pacing, played, protocol.timing,
-                                              study::TimingGrade::CpuSubmit);
+      auto verdict = study::judge_trial(setting, protocol.pacing, played, protocol.timing,
+                                        study::TimingGrade::CpuSubmit);
+      if (error_ms) verdict.animation_error_ms = error_ms(unit.plan.position);
       const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, start_ns);
       store.end_presentation(id, start_ns, played.end_ns,
                              record ? played.frames : std::vector<study::FrameRecord>(), verdict);
-      const auto at = study::timing_predictors(study::realised_intervals(played, verdict.grade));
+      const auto at = study::timing_predictors(study::realised_intervals(played, verdict.grade),
+                                               verdict.animation_error_ms);
       const study::KeptAnswer kept{"satisfaction", {{score(person, at), ""}, 1}};
       store.answer(session.id, unit, 1, {&kept, 1}, true, 2);
     }

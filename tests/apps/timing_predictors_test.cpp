@@ -35,14 +35,22 @@ TEST(TimingPredictors, OfFewFramesAreThoseOfHand) {
 TEST(TimingPredictors, OnlyStepsDependOnTheOrder) {
   const std::vector<double> a{0.01, 0.03, 0.01, 0.03, 0.02}, b{0.01, 0.01, 0.02, 0.03, 0.03};
   const auto x = study::timing_predictors(a), y = study::timing_predictors(b);
-  for (std::size_t i = 0; i + 1 < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << i;
-  EXPECT_GT(x.back(), y.back());
+  constexpr auto steps = static_cast<std::size_t>(TimingPredictor::Steps);
+  for (std::size_t i = 0; i < steps; ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << i;
+  EXPECT_GT(x[steps], y[steps]);
 }
 
 TEST(TimingPredictors, RefuseNoFramesAndOneFrameIsDefined) {
   EXPECT_THROW(study::timing_predictors({}), std::invalid_argument);
   EXPECT_THROW(study::timing_predictors(std::vector<double>{0.01, 0}), std::invalid_argument);
-  for (const double v : study::timing_predictors(std::vector<double>{0.02})) EXPECT_TRUE(std::isfinite(v));
+  for (const double v : study::timing_predictors(std::vector<double>{0.02}, 0)) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST(TimingPredictors, AnimationErrorIsTheRecordedOneOrNone) {
+  constexpr auto error = static_cast<std::size_t>(TimingPredictor::AnimationError);
+  const std::vector<double> one{0.02};
+  EXPECT_NEAR(study::timing_predictors(one, 9)[error], std::log(10), 1e-12);
+  EXPECT_TRUE(std::isnan(study::timing_predictors(one)[error]));
 }
 
 TEST(TimingModels, AreReadByName) {

@@ -33,7 +33,7 @@ std::vector<double> alternating_ms(double first_fps, double second_fps) {
   return out;
 }
 
-std::vector<Candidate> candidates(bool order_matters) {
+std::vector<Candidate> candidates(bool order_matters, bool error_matters) {
   std::vector<Candidate> out;
   for (const double fps : {15, 20, 25, 30, 40, 50, 60}) {
     for (const double hitch_ms : {100, 150, 200, 250, 400}) {
@@ -50,6 +50,11 @@ std::vector<Candidate> candidates(bool order_matters) {
       const TimingProfile profile{.kind = ProfileKind::Moments, .mean_fps = fps, .sd_fps = sd};
       out.push_back({profile});
       if (order_matters && sd > 0) out.push_back({profile, FrameOrder::Ar1});
+      for (const double error_ms : {5.0, 10.0, 20.0, 40.0}) {
+        if (!error_matters) break;
+        out.push_back({profile});
+        out.back().profile.animation_error_ms = error_ms;
+      }
     }
   }
   return out;
@@ -67,7 +72,10 @@ std::string timing_keys(const TimingProfile& profile) {
     case ProfileKind::Moments:
       break;
   }
-  return fmt::format("mean_fps = {:g}, sd_fps = {:g}", profile.mean_fps, profile.sd_fps);
+  return fmt::format("mean_fps = {:g}, sd_fps = {:g}", profile.mean_fps, profile.sd_fps) +
+         (profile.animation_error_ms > 0
+              ? fmt::format(", animation_error_ms = {:g}", profile.animation_error_ms)
+              : "");
 }
 
 /// The words of a candidate: a trace by its two rates, since its words otherwise are a hash.
@@ -141,18 +149,21 @@ Proposals propose_timings(const RivalData& data, const std::vector<FittedModel>&
   Proposals out;
   const Shown shown(data.timing);
   const auto scores = scores_of(data.task.question);
-  const bool order_matters = std::any_of(models.begin(), models.end(), [](const FittedModel& one) {
-    return std::count(one.model->predictors.begin(), one.model->predictors.end(), TimingPredictor::Steps) > 0;
-  });
+  const auto matters = [&](TimingPredictor predictor) {
+    return std::any_of(models.begin(), models.end(),
+                       [&](const FittedModel& one) { return one.model->uses(predictor); });
+  };
   std::vector<std::pair<Proposal, ProfileKind>> all;
-  for (const Candidate& candidate : candidates(order_matters)) {
+  for (const Candidate& candidate :
+       candidates(matters(TimingPredictor::Steps), matters(TimingPredictor::AnimationError))) {
     Proposal one;
     try {
       const FpsSetting setting = setting_of(candidate.profile, data.settings.front().duration_s);
       PacingRules rules;
       rules.order = candidate.order;
       rules.ar1 = candidate.order == FrameOrder::Ar1 ? correlation : 0;
-      const auto at = timing_predictors(compile_schedule(setting, rules, proposal_seed).intervals_s);
+      const auto at = timing_predictors(compile_schedule(setting, rules, proposal_seed).intervals_s,
+                                        candidate.profile.animation_error_ms);
       ++out.tried;
       if (!predict(at, shown, models, scores, one)) {
         ++out.beyond;

@@ -1,6 +1,7 @@
 #include "libstudy/analysis/rivals/rival_data.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libstudy/analysis/trial_record.hpp"
 #include "libstudy/store/read/frame_times.hpp"
@@ -94,7 +95,7 @@ RivalData collect_rival_data(const StudyFile& file, const TaskStudy& study, cons
       if (out.answers.person.back() == static_cast<int>(out.participants.size()))
         out.participants.push_back(session.participant);
       out.setting.push_back(index_of_setting(out.settings, trial.first.nominal));
-      out.timing.push_back(timing_predictors(found->second.intervals_s));
+      out.timing.push_back(timing_predictors(found->second.intervals_s, found->second.animation_error_ms));
     }
   }
   out.answers.people = static_cast<int>(out.participants.size());
@@ -126,6 +127,22 @@ std::string why_no_comparison(const RivalData& data, std::string& mend) {
            " people, not " + std::to_string(data.answers.people);
   }
   return "";
+}
+
+std::string why_not_recorded(const RivalData& data, const std::vector<TimingModel>& models,
+                             std::string& mend) {
+  constexpr auto error = TimingPredictor::AnimationError;
+  const auto lacking = std::count_if(data.timing.begin(), data.timing.end(), [](const auto& one) {
+    return std::isnan(one[static_cast<std::size_t>(error)]);
+  });
+  const bool used =
+      std::any_of(models.begin(), models.end(), [](const TimingModel& one) { return one.uses(error); });
+  if (lacking == 0 || !used) return "";
+  mend = std::string("leave ") + predictor_name(error) + " out of --models";
+  return std::string(predictor_name(error)) + " is not recorded for " + std::to_string(lacking) + " of " +
+         std::to_string(data.timing.size()) +
+         " answers: their content followed frames instead of time, or they are imported or of a version "
+         "before 8 of the schema";
 }
 
 }  // namespace study

@@ -40,4 +40,9 @@ RivalData collect_rival_data(const StudyFile& file, const TaskStudy& study, cons
 /// Empty if they can. `mend` then receives the advice.
 std::string why_no_comparison(const RivalData& data, std::string& mend);
 
+/// Why these models cannot be compared: a predictor is not recorded for some answers. Empty if they can.
+/// `mend` then receives the advice.
+std::string why_not_recorded(const RivalData& data, const std::vector<TimingModel>& models,
+                             std::string& mend);
+
 }  // namespace study

@@ -27,6 +27,7 @@ constexpr std::array<PredictorNames, timing_predictor_count> predictor_table{{
     {"longest", "log(1000 / longest frame time in ms)"},
     {"hitches", "log(1 + number of frame times above 1.5 medians)"},
     {"steps", "log(1 + root mean square difference of successive frame times in ms)"},
+    {"animation_error", "log(1 + mean absolute difference of simulated and shown steps in ms)"},
 }};
 
 constexpr const char* ptpe_model = "ptpe";
@@ -62,7 +63,8 @@ TimingModel model_of(const std::string& name, const std::string& option) {
 
 }  // namespace
 
-TimingPredictors timing_predictors(std::span<const double> intervals_s) {
+TimingPredictors timing_predictors(std::span<const double> intervals_s,
+                                   std::optional<double> animation_error_ms) {
   const auto moments = stats::fps_moments(intervals_s);
   if (moments.frames == 0)
     throw std::invalid_argument("timing_predictors: no interval; give the times of at least one frame");
@@ -89,7 +91,12 @@ TimingPredictors timing_predictors(std::span<const double> intervals_s) {
   set(TimingPredictor::Longest, std::log(1000 / sorted.back()));
   set(TimingPredictor::Hitches, std::log1p(static_cast<double>(hitches)));
   set(TimingPredictor::Steps, n > 1 ? std::log1p(std::sqrt(steps / (n - 1))) : 0);
+  set(TimingPredictor::AnimationError, animation_error_ms ? std::log1p(*animation_error_ms) : NAN);
   return out;
+}
+
+bool TimingModel::uses(TimingPredictor one) const {
+  return std::find(predictors.begin(), predictors.end(), one) != predictors.end();
 }
 
 const char* predictor_name(TimingPredictor predictor) {

@@ -3,6 +3,7 @@
 /// rival models made of them.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,13 +20,16 @@ enum class TimingPredictor {
   P99,             ///< log(1000 / 99th percentile of dt in ms)
   Longest,         ///< log(1000 / longest dt in ms)
   Hitches,         ///< log(1 + number of dt longer than hitch_factor times the median), as in the certificate
-  Steps            ///< log(1 + root mean square difference of successive dt in ms); depends on their order
+  Steps,           ///< log(1 + root mean square difference of successive dt in ms); depends on their order
+  AnimationError   ///< log(1 + mean absolute difference in ms between the step of the simulated time and dt)
 };
-inline constexpr std::size_t timing_predictor_count = 9;
+inline constexpr std::size_t timing_predictor_count = 10;
 using TimingPredictors = std::array<double, timing_predictor_count>;  ///< by TimingPredictor
 
-/// std::invalid_argument if there is no interval or one is not positive and finite.
-TimingPredictors timing_predictors(std::span<const double> intervals_s);
+/// animation_error_ms: as recorded for the showing (presentation.animation_error_ms); without it
+/// AnimationError is NaN. std::invalid_argument if there is no interval or one is not positive and finite.
+TimingPredictors timing_predictors(std::span<const double> intervals_s,
+                                   std::optional<double> animation_error_ms = {});
 
 /// Name in options and JSON, such as "p95"; "log of the harmonic mean of the frame rate" in words.
 const char* predictor_name(TimingPredictor predictor);
@@ -36,14 +40,14 @@ struct TimingModel {
   std::string name;                         ///< such as "p95", "ptpe" or "p95+hitches"
   std::vector<TimingPredictor> predictors;  ///< one or two
 
+  bool uses(TimingPredictor one) const;
   double value(const TimingPredictors& of, std::size_t predictor) const {
     return of[static_cast<std::size_t>(predictors[predictor])];
   }
 };
 
-/// The models that are compared without --models: each predictor but RateSd and Steps alone, and "ptpe", log
-/// mu
-/// - b delta.
+/// The models that are compared without --models: each predictor but RateSd, Steps and AnimationError
+/// alone, and "ptpe", log mu - b delta.
 std::vector<TimingModel> usual_timing_models();
 /// Reads "ptpe,p95,longest+hitches": names of predictors, "ptpe", or two predictors joined by '+'.
 /// base::Error for an unknown name, a name given twice and fewer than two models.

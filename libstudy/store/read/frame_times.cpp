@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* shown_first_sql =
     "SELECT s.uid, t.position, p.presentation_id, coalesce(p.grade, 'D'), p.start_ns, "
-    "coalesce(p.end_ns, -1), coalesce(p.frames, 0) FROM trial t JOIN session s USING (session_id) "
+    "coalesce(p.end_ns, -1), coalesce(p.frames, 0), p.animation_error_ms FROM trial t JOIN session s USING "
+    "(session_id) "
     "JOIN protocol o USING (protocol_id) JOIN trial_showing w USING (trial_id) "
     "JOIN presentation p ON p.trial_id = t.trial_id AND p.attempt = w.attempt AND p.interval = 0 "
     "WHERE o.sha256 = ? AND p.state = 'played'";
@@ -32,22 +33,23 @@ std::int64_t on_the_clock(std::int64_t start_ns, const Statement& row, int colum
 
 FrameTimes times_of(const PlayedTrial& played, TimingGrade grade, std::int64_t shown) {
   const auto recorded = static_cast<std::int64_t>(played.frames.size());
-  if (recorded == 0) return {{}, "no frame is recorded"};
+  if (recorded == 0) return {{}, {}, "no frame is recorded"};
   if (recorded != shown)
-    return {{}, std::to_string(recorded) + " of " + std::to_string(shown) + " frames are recorded"};
+    return {{}, {}, std::to_string(recorded) + " of " + std::to_string(shown) + " frames are recorded"};
   const auto each = [&](const auto& has_time) {
     return std::all_of(played.frames.begin(), played.frames.end(), has_time);
   };
   const bool reported = grade == TimingGrade::Photodiode || grade == TimingGrade::DisplayFeedback;
   const auto is_placed = [&](const FrameRecord& one) { return placed_ns(one.times, grade) >= 0; };
   const auto is_shown = [&](const FrameRecord& one) { return one.times.actual_display_ns >= 0; };
-  if (!each(is_placed) && !(reported && each(is_shown))) return {{}, "the time of a frame is not recorded"};
-  FrameTimes out{realised_intervals(played, grade), ""};
+  if (!each(is_placed) && !(reported && each(is_shown)))
+    return {{}, {}, "the time of a frame is not recorded"};
+  FrameTimes out{realised_intervals(played, grade), {}, ""};
   // Imported frames may lack the end of the last one.
   if (played.end_ns < 0) out.intervals_s.pop_back();
-  if (out.intervals_s.empty()) return {{}, "a single frame without its end is recorded"};
+  if (out.intervals_s.empty()) return {{}, {}, "a single frame without its end is recorded"};
   if (*std::min_element(out.intervals_s.begin(), out.intervals_s.end()) > 0) return out;
-  return {{}, "the onsets do not ascend"};
+  return {{}, {}, "the onsets do not ascend"};
 }
 
 }  // namespace
@@ -68,8 +70,9 @@ std::map<std::pair<std::string, int>, FrameTimes> read_frame_times(const StudyFi
       one.times.predicted_display_ns = on_the_clock(start_ns, frame, 2);
       one.times.actual_display_ns = on_the_clock(start_ns, frame, 3);
     }
-    out[{showing.text(0), static_cast<int>(showing.integer(1))}] =
-        times_of(played, grade_of(showing.text(3)), showing.integer(6));
+    FrameTimes& times = out[{showing.text(0), static_cast<int>(showing.integer(1))}];
+    times = times_of(played, grade_of(showing.text(3)), showing.integer(6));
+    if (!showing.is_null(7)) times.animation_error_ms = showing.real(7);
   }
   return out;
 }

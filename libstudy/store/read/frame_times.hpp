@@ -3,6 +3,7 @@
 /// database.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,10 @@ namespace study {
 /// The times for which the frames of a showing stayed on, in their order.
 struct FrameTimes {
   std::vector<double> intervals_s;  ///< empty if why_not is not
-  std::string why_not;              ///< why there are no frame times; empty: there are
+  /// Mean absolute difference between the steps of the simulated time and the intervals, ms; none: not
+  /// recorded, because content followed frames, was imported, or is of an earlier version.
+  std::optional<double> animation_error_ms;
+  std::string why_not;  ///< why there are no frame times; empty: there are
 };
 
 /// The first stimulus of each trial that was played, by TaskSession::uid and TaskTrial::position. The showing

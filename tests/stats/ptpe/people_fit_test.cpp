@@ -74,7 +74,7 @@ void expect_clmm(const base::Json& one) {
   options.lapse = 0;
   const auto fit = fit_people(ratings_of(one), PilotMean::Harmonic, one.at("level"), options);
   ASSERT_TRUE(fit) << fit.reason();
-  expect_near(one, *fit, 0.05, 0.1);
+  expect_near(one, *fit, 0.03, 0.02);
 }
 
 void expect_whole(const base::Json& one) {
