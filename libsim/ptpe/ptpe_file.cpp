@@ -93,7 +93,7 @@ std::string describe(const PtpeFile& file) {
   if (!file.band.empty())
     out += fmt::format("mu uncertain by up to +-{:.0f} % at delta {:g} to {:g}, ", 100 * widest(file),
                        file.band.front().delta, file.band.back().delta);
-  out += fmt::format("{} participants", file.n_participants);
+  out += fmt::format("{} participant{}", file.n_participants, file.n_participants == 1 ? "" : "s");
   if (file.n_simulated > 0) out += fmt::format(", {} of them SIMULATED", file.n_simulated);
   return out + (file.test_data ? ", TEST DATA)" : ")");
 }

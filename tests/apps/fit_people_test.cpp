@@ -64,13 +64,19 @@ TEST(FitPeople, WritesEachPersonsCurveAndTheFileOfOne) {
   EXPECT_NEAR(std::log(file.model.a), std::log(24), 0.5);
 }
 
-TEST(FitPeople, RefusesWhatItCannotGive) {
+TEST(FitPeople, GivesNoFileOfAPersonWithoutAContour) {
   const auto& pilot = people_pilot();
   const auto own = pilot.folder / "no.toml";
   const auto equal = pilot.fit("--person P6 --out " + own.string());
   EXPECT_EQ(equal.exit_code, 1);
   EXPECT_THAT(equal.out, HasSubstr("all answers are equal"));
   EXPECT_THAT(equal.out, HasSubstr("vip-stats fit-ptpe with --out"));
+  EXPECT_FALSE(std::filesystem::exists(own));
+}
+
+TEST(FitPeopleSlow, RefusesWithRemedies) {
+  const auto& pilot = people_pilot();
+  const auto own = pilot.folder / "none.toml";
   const auto unknown = pilot.fit("--person P7 --out " + own.string());
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_THAT(unknown.out, HasSubstr("has no answer in this fit"));
@@ -87,7 +93,7 @@ TEST(FitPeople, RefusesWhatItCannotGive) {
   EXPECT_FALSE(std::filesystem::exists(pilot.folder / "few.json"));
 }
 
-TEST(FitPeople, AWithdrawalDeletesTheFilesOfPeople) {
+TEST(FitPeopleSlow, AWithdrawalDeletesTheFilesOfPeople) {
   study::test::TemporaryFolder folder;
   const auto database = folder / "pilot.db", json = folder / "people.json", own = folder / "p1.toml";
   testing_pilot::write_database(database, testing_pilot::simulated("ptpe:a=24,b=0.02"));
