@@ -24,8 +24,9 @@ void print_trace(const TraceOptions& options) {
               capture.column.empty() ? "" : (", " + base::shortened(capture.column)).c_str(),
               study::describe_capture(capture).c_str());
   if (capture.left_out > 0)
-    std::printf("# left out: %lld of 0 or NA, which were never shown or had no frame before them\n",
+    std::printf("# rows without a frame time: %lld (frames that were never shown, or the first of the log)\n",
                 static_cast<long long>(capture.left_out));
+  for (const std::string& remark : capture.remarks) std::printf("# %s\n", remark.c_str());
   std::printf("%s\n", study::timing_line(capture).c_str());
 }
 
@@ -36,11 +37,11 @@ void add_trace_command(CLI::App& app) {
   CLI::App& sub = *app.add_subcommand(
       "trace", "Print the frame times of a capture as the timing of a [[factor.level]], with their moments");
   sub.add_option("file", options->file,
-                 "CSV file of PresentMon or CapFrameX, or with one column of frame times in ms")
+                 "Frame log of one window in a format of docs/session.md, or one column of frame times in ms")
       ->required();
   sub.add_option("--column", options->column,
-                 "Column to read; without: the only one, or MsBetweenPresents, FrameTime or "
-                 "MsBetweenDisplayChange");
+                 "Column of frame times in ms (default: intervals between frames; without them, between "
+                 "changes of the picture)");
   sub.add_option("--seconds", options->seconds, "Read the first seconds alone")->check(number_in(0.01, 3600));
   sub.callback([options] { print_trace(*options); });
 }

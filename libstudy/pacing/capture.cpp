@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numeric>
+#include <utility>
 
-#include "libstudy/pacing/capture_table.hpp"
+#include "libstudy/pacing/frame_log.hpp"
 #include "libstudy/pacing/profile.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
@@ -19,55 +19,6 @@ namespace study {
 namespace {
 
 constexpr double slow_share = 0.05;  // share of the frames, the slowest: their mean rate is the "5 % low"
-
-class CaptureReader {
- public:
-  CaptureReader(const std::filesystem::path& file, const std::string& column) : table_(file) {
-    column_ = column.empty() ? usual_column() : table_.chosen(column);
-    out_.column = table_.names()[column_];
-    for (const char* name : {"ProcessID", "SwapChainAddress"})
-      if (const auto place = table_.place_of(name)) sources_[*place] = "";
-  }
-
-  FrameCapture read() {
-    std::vector<std::string> fields;
-    for (bool first = true; table_.next(fields); first = false) {
-      check_source(fields, first);
-      if (const auto ms = table_.frame_time(fields[column_], first || is_displayed(out_.column)))
-        out_.frame_ms.push_back(std::round(1e3 * *ms) / 1e3);
-      else
-        ++out_.left_out;
-    }
-    return std::move(out_);
-  }
-
- private:
-  std::size_t usual_column() const {
-    if (table_.names().size() == 1) return 0;
-    for (const char* name : {"MsBetweenPresents", "FrameTime", "MsBetweenDisplayChange"})
-      if (const auto place = table_.place_of(name)) return *place;
-    table_.fail("has no column MsBetweenPresents, FrameTime or MsBetweenDisplayChange",
-                "name the column with the frame times by --column; the first column of this file is " +
-                    base::shortened(table_.names().front()));
-  }
-
-  /// Refuses a row of another process or swap chain than that of the rows before.
-  void check_source(const std::vector<std::string>& fields, bool first) {
-    for (auto& [place, source] : sources_) {
-      if (first) source = fields[place];
-      if (source != fields[place])
-        table_.fail("is of " + table_.names()[place] + " " + base::shortened(fields[place], 40) +
-                        ", and the rows before of " + base::shortened(source, 40),
-                    "keep the rows of one program and one window in the file");
-    }
-  }
-
-  CaptureTable table_;
-  std::size_t column_ = 0;
-  /// By index of a column that names the process or the swap chain: the value that all rows must have.
-  std::map<std::size_t, std::string> sources_;
-  FrameCapture out_;
-};
 
 /// Keeps the first frames that together last at least `seconds`. base::Error if all frames last less.
 void cut(FrameCapture& capture, double seconds, const std::string& file) {
@@ -84,7 +35,9 @@ void cut(FrameCapture& capture, double seconds, const std::string& file) {
 
 FrameCapture read_capture(const std::filesystem::path& file, const std::string& column,
                           std::optional<double> seconds) {
-  FrameCapture out = CaptureReader(file, column).read();
+  FrameLog log = read_frame_log(file, column, Intervals::Frames);
+  FrameCapture out{log.column, std::move(log.frame_ms), log.left_out, std::move(log.remarks)};
+  for (double& ms : out.frame_ms) ms = std::round(1e3 * ms) / 1e3;
   if (seconds) cut(out, *seconds, file.string());
   if (out.frame_ms.size() < 2 || out.frame_ms.size() > most_trace_frames)
     throw base::Error(

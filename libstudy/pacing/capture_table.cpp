@@ -53,8 +53,7 @@ char separator_of(const std::string& line) {
 
 }  // namespace
 
-CaptureTable::CaptureTable(const std::filesystem::path& file)
-    : file_(file.string()), lines_(base::read_file(file, most_capture_bytes)) {
+CaptureTable::CaptureTable(const std::filesystem::path& file) : file_(file.string()), lines_(text_of(file)) {
   std::string line;
   bool more = next_line(line);
   while (more && (line.starts_with("//") || line.starts_with("#"))) more = next_line(line);
@@ -77,10 +76,30 @@ CaptureTable::CaptureTable(const std::filesystem::path& file)
   later_fields_ = place_of("Motherboard").value_or(names_.size());
 }
 
+/// The lines of the file, which of a JSON file are made of its lists.
+std::string CaptureTable::text_of(const std::filesystem::path& file) {
+  std::string text = base::read_file(file, most_capture_bytes);
+  const std::size_t start = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  if (const auto first = text.find_first_not_of(" \t\r\n", start);
+      first == std::string::npos || text[first] != '{')
+    return text;
+  json_ = read_capframex_json(file_, text.substr(start));
+  return std::exchange(json_->csv, {});
+}
+
 bool CaptureTable::next(std::vector<std::string>& fields) {
   if (first_row_.empty()) {
     std::string line;
     if (!next_line(line)) return false;
+    if (lines_.eof()) {
+      cut_ = true;
+      return false;
+    }
+    if (blank_ > 0) {
+      number_ = blank_;
+      fail("is blank inside the table, so a row may be missing",
+           "delete the line if no row is missing, or give the log of a whole recording");
+    }
     fields = fields_of(line, separator_);
     // Unreal repeats the names in the last line but one. The last line describes the build.
     if (named_ && fields == names_) {
@@ -132,7 +151,12 @@ std::optional<double> CaptureTable::frame_time(const std::string& text, bool may
 double CaptureTable::checked_time(double ms) const { return *frame_time(base::shortest(ms), false); }
 
 void CaptureTable::fail(const std::string& problem, const std::string& mend) const {
-  throw base::Error(file_ + ":" + std::to_string(std::max(number_, 1)), problem, mend);
+  std::string place = file_ + ":" + std::to_string(std::max(number_, 1));
+  if (json_) {
+    place = file_ + ": CaptureData";
+    if (number_ > 1) place = file_ + ": " + place_of_frame(*json_, static_cast<std::size_t>(number_ - 2));
+  }
+  throw base::Error(place, problem, mend);
 }
 
 void CaptureTable::fail(const std::string& problem) const {
@@ -142,18 +166,17 @@ void CaptureTable::fail(const std::string& problem) const {
 }
 
 /// Sets `line` to the next line that is not blank, without its line end, and without a byte-order mark at the
-/// beginning of the file. Returns false at the end of the file.
+/// beginning of the file, and `blank_` to the first blank line before it. Returns false at the end of the
+/// file.
 bool CaptureTable::next_line(std::string& line) {
+  blank_ = 0;
   while (std::getline(lines_, line)) {
     if (++number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (!trimmed(line).empty()) return true;
+    if (blank_ == 0) blank_ = number_;
   }
   return false;
-}
-
-bool is_displayed(const std::string& column) {
-  return folded_name(column).find("display") != std::string::npos;
 }
 
 std::string folded_name(std::string text) {

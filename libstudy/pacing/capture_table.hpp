@@ -1,6 +1,6 @@
 #pragma once
 /// The rows of a frame log: a CSV file of PresentMon, OCAT, FrameView, CapFrameX, FRAPS, MangoHud or Unreal's
-/// CSV profiler, a table with the same separators, or one column of numbers.
+/// CSV profiler, a table with the same separators, one column of numbers, or a JSON file of CapFrameX.
 
 #include <cstddef>
 #include <filesystem>
@@ -9,10 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/pacing/capframex_json.hpp"
+
 namespace study {
 
 /// Reads a log row by row. Fields are separated by commas, semicolons or tabs, and may be quoted. Leading
-/// lines that begin with "//" or "#" are comments. base::Error at file:line for a file that is no such table.
+/// lines that begin with "//" or "#" are comments. A row whose line does not end may be cut, and is left out.
+/// base::Error at file:line for a file that is no such table, and for a blank line between rows, which may
+/// stand for a missing row. Of a JSON file, base::Error at the run and the frame.
 class CaptureTable {
  public:
   /// Reads the file as far as the names of the columns.
@@ -23,6 +27,8 @@ class CaptureTable {
   bool named() const { return named_; }
   bool mangohud() const { return mangohud_; }  ///< true: MangoHud's description of the computer came first
   const std::string& file() const { return file_; }
+  /// True if next() left out the last row, because its line does not end.
+  bool cut() const { return cut_; }
 
   /// Sets `fields` to the next row, with one field for each name; false at the end.
   bool next(std::vector<std::string>& fields);
@@ -47,19 +53,19 @@ class CaptureTable {
   [[noreturn]] void fail(const std::string& problem) const;
 
  private:
+  std::string text_of(const std::filesystem::path& file);
   bool next_line(std::string& line);
 
   std::string file_;
+  std::optional<CapFrameXLog> json_;  ///< without its text; none: the file is no JSON
   std::istringstream lines_;
   int number_ = 0;  ///< number of the last line read, from 1
+  int blank_ = 0;   ///< number of a blank line before it; 0: none
   char separator_ = ',';
   std::vector<std::string> names_, first_row_;  ///< first_row_: a row that was read where names were expected
-  bool named_ = false, first_ = true, mangohud_ = false;
+  bool named_ = false, first_ = true, mangohud_ = false, cut_ = false;
   std::size_t later_fields_ = 0;  ///< number of fields of the rows after the first
 };
-
-/// True for a column whose zeros and "NA" mark frames that were never shown.
-bool is_displayed(const std::string& column);
 
 /// `text` in lower case (ASCII).
 std::string folded_name(std::string text);

@@ -118,6 +118,9 @@ class FrameLogReader {
     if (out.empty())
       throw base::Error(table_.file(), "holds fewer than two frame times of each window",
                         "record for longer");
+    for (FrameLog& log : out) log.cut = table_.cut();
+    if (table_.cut())
+      remarks.emplace_back("the last line of the file does not end, so its row may be cut and is left out");
     out.back().remarks.insert(out.back().remarks.end(), remarks.begin(), remarks.end());
     return out;
   }
@@ -208,7 +211,8 @@ class FrameLogReader {
       table_.fail(window.logs[i].column +
                       " has an interval for a frame that was never shown, so its intervals are "
                       "not those of the display",
-                  "certify the frames alone, with --column MsBetweenPresents");
+                  "read the frames alone: name the column MsBetweenPresents, by --column or under [frames] "
+                  "of a mapping");
     return ms;
   }
 
@@ -277,6 +281,19 @@ class FrameLogReader {
 
 std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column) {
   return FrameLogReader(file, column).read();
+}
+
+FrameLog read_frame_log(const std::filesystem::path& file, const std::string& column, Intervals preferred) {
+  std::vector<FrameLog> logs = read_frame_logs(file, column);
+  for (const FrameLog& log : logs)
+    if (log.source != logs.front().source)
+      throw base::Error(file.string(),
+                        "holds frames of several windows or programs: " +
+                            base::shortened(logs.front().source) + "; " + base::shortened(log.source),
+                        "keep the rows of the window or run that showed the stimulus");
+  const auto chosen =
+      std::find_if(logs.begin(), logs.end(), [&](const FrameLog& log) { return log.kind == preferred; });
+  return std::move(chosen == logs.end() ? logs.front() : *chosen);
 }
 
 PlayedTrial played_of_log(const FrameLog& log) {

@@ -25,13 +25,14 @@ struct FrameLog {
   std::int64_t left_out = 0;
   std::optional<double> animation_error_ms;  ///< mean |animation error|; none: not in the log
   std::int64_t animation_rows = 0;           ///< number of rows in that mean
+  bool cut = false;  ///< true: the last line of the file does not end, and its row was left out
   /// What the log does not determine, such as a window that has too few frames; empty: nothing.
   std::vector<std::string> remarks;
 };
 
 /// Reads a CSV file of PresentMon 1 or 2, OCAT, FrameView, CapFrameX, FRAPS (frametimes), MangoHud or
-/// Unreal's CSV profiler, a table with a column of frame times in ms, or one column of numbers without a
-/// name.
+/// Unreal's CSV profiler, a JSON file of CapFrameX, a table with a column of frame times in ms, or one column
+/// of numbers without a name.
 ///
 /// column: the name of the column to read. If it is empty: the intervals between frames (MsBetweenPresents,
 /// FrameTime, or the differences of "Time (ms)") and between changes of the picture (MsBetweenDisplayChange
@@ -39,13 +40,18 @@ struct FrameLog {
 /// the order of their first rows; a column without frame times of a window is left out.
 ///
 /// MangoHud's older logs hold microseconds, which the column of frame rates shows. Windows with fewer than
-/// two frame times are left out, with a remark.
+/// two frame times are left out, with a remark, as is a last row whose line does not end: a program that was
+/// stopped may have cut its last number.
 ///
-/// base::Error at file:line for a file that is no such table, and for a frame time outside shortest_trace_ms
-/// to longest_trace_ms. base::Error at the file for a log that holds samples or mean rates instead of each
-/// frame, and if no window has two frame times. base::Error at file:line if the display column has an
-/// interval for a frame that was never shown.
+/// base::Error at file:line for a file that is no such table, for a blank line inside the table, and for a
+/// frame time outside shortest_trace_ms to longest_trace_ms. base::Error at the file for a log that holds
+/// samples or mean rates instead of each frame, and if no window has two frame times. base::Error at
+/// file:line if the display column has an interval for a frame that was never shown.
 std::vector<FrameLog> read_frame_logs(const std::filesystem::path& file, const std::string& column);
+
+/// The log of a file that holds one window: of its columns the first of this kind, else the first.
+/// base::Error as read_frame_logs(), and at the file if it holds several windows.
+FrameLog read_frame_log(const std::filesystem::path& file, const std::string& column, Intervals preferred);
 
 /// The frames of a log as a trial whose frames came when they were due: a log has no schedule.
 PlayedTrial played_of_log(const FrameLog& log);

@@ -70,6 +70,16 @@ TEST(VipStudyCertifyE2e, EqualsAScriptOnPublicLogs) {
     expect_moments(file, "MsBetweenPresents");
     expect_moments(file, "MsBetweenDisplayChange");
   }
+  // The rows of capframex.csv, in the layout of CapFrameX' JSON files.
+  const auto json = vip_study("certify " + logs + "capframex.json");
+  const auto rows = vip_study("certify " + logs + "capframex.csv");
+  for (const char* column : {"MsBetweenPresents", "MsBetweenDisplayChange"}) {
+    auto of_json = words_of(json.out, {column}), of_rows = words_of(rows.out, {column});
+    ASSERT_GE(of_json.size(), 15u) << json.out;
+    of_json.erase(of_json.begin(), of_json.end() - 15);
+    of_rows.erase(of_rows.begin(), of_rows.end() - 15);
+    EXPECT_EQ(of_json, of_rows);
+  }
   expect_moments("fraps.csv", "Time (ms)", "", "-F ';' -v cumulative=1 -v comma=1");
 }
 
@@ -134,6 +144,11 @@ TEST(VipStudyCertifyE2e, SaysNothingThatALogDoesNotHold) {
               HasSubstr("does not hold every frame"));
   EXPECT_THAT(certified("Application,FrameTime\na,16\na,16\nb,16\n").out,
               HasSubstr("FrameTime of b has fewer than two intervals in 1 rows and is left out"));
+  const auto cut = certified("FrameTime\n16\n16\n1");
+  EXPECT_THAT(cut.out, HasSubstr("2 frames in 0.032000 s"));
+  EXPECT_THAT(cut.out,
+              HasSubstr("the last line of the file does not end, so its row may be cut and is left out"));
+  EXPECT_THAT(certified("FrameTime\n16\n\n16\n").out, HasSubstr("log.csv:3: is blank inside the table"));
   EXPECT_THAT(certified("FrameTime\n16\n16\n").out, HasSubstr("whether rows are missing is not known"));
 }
 

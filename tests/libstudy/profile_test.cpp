@@ -176,7 +176,7 @@ TEST(Capture, ReadsColumnsOfPresentMonAndOneColumnOfNumbers) {
   EXPECT_EQ(presents.left_out, 1);
   const FrameCapture displayed = captured(presentmon, "MSBETWEENDISPLAYCHANGE");
   EXPECT_THAT(displayed.frame_ms, ElementsAre(16.6, 16.7, 33.3)) << "0: never shown";
-  EXPECT_THAT(captured("16.7\n\n17\n").frame_ms, ElementsAre(16.7, 17));
+  EXPECT_THAT(captured("16.7\n17\n\n").frame_ms, ElementsAre(16.7, 17));
   EXPECT_THAT(captured("\xEF\xBB\xBFt;frame ms\n1;16,7\n2;17,5\n", "frame ms").frame_ms,
               ElementsAre(16.7, 17.5));
   EXPECT_THAT(captured("10\n20\n30\n40\n", "", 0.03).frame_ms, ElementsAre(10, 20));
@@ -186,6 +186,29 @@ TEST(Capture, ReadsOcatWhoseFirstRowDescribesTheComputer) {
   const std::string ocat = "MsBetweenPresents,Motherboard,OS\n10,\"A, B\",x\n20\n";
   EXPECT_THAT(captured(ocat).frame_ms, testing::ElementsAre(10, 20));
   EXPECT_THROW(captured(ocat + "30,x\n"), base::Error);
+}
+
+TEST(Capture, ReadsEveryFormatThatCertificatesRead) {
+  using testing::ElementsAre;
+  const FrameCapture fraps = captured("Frame; Time (ms)\n1;0\n2;16,5\n3;33\n");
+  EXPECT_THAT(fraps.frame_ms, ElementsAre(16.5, 16.5));
+  EXPECT_EQ(fraps.left_out, 1);
+  EXPECT_THAT(captured("os,cpu,gpu\nx,y,z\nfps,frametime\n50,20000\n50,21000\n").frame_ms,
+              ElementsAre(20, 21))
+      << "microseconds of an older MangoHud";
+  EXPECT_THAT(captured("a,DisplayedTime\n1,16\n2,NA\n3,17\n").frame_ms, ElementsAre(16, 17));
+  const std::string json =
+      R"({"Info": {"ProcessName": "g.exe"}, "Runs": [{"CaptureData": {"TimeInSeconds": [0, 0.017],)"
+      R"( "MsBetweenPresents": [16.6666, 17], "MsBetweenDisplayChange": ["NaN", 16]}}]})";
+  EXPECT_THAT(captured(json).frame_ms, ElementsAre(16.667, 17));
+}
+
+TEST(Capture, LeavesOutALastNumberThatMayBeCut) {
+  const FrameCapture cut = captured("FrameTime\n16\n17\n1");
+  EXPECT_THAT(cut.frame_ms, testing::ElementsAre(16, 17));
+  EXPECT_THAT(cut.remarks, testing::Contains(HasSubstr("the last line of the file does not end")));
+  EXPECT_THAT(captured("FrameTime\n16\n17\n").remarks,
+              testing::Not(testing::Contains(HasSubstr("the last line of the file"))));
 }
 
 TEST(Capture, ItsLineIsTheTimingOfALevel) {
@@ -210,14 +233,27 @@ TEST(Capture, RefusesJunkWithItsLine) {
   EXPECT_THAT(error_of("16.7\nnan\n"), HasSubstr("game.csv:2: \"nan\""));
   EXPECT_THAT(error_of("16.7\n1e9\n"), HasSubstr("game.csv:2: \"1e9\""));
   EXPECT_THAT(error_of(presentmon + "C,12,16\n"), HasSubstr("game.csv:7: has 3 fields where 4 belong"));
-  EXPECT_THAT(error_of(presentmon + "C,13,16,16\n"), HasSubstr("game.csv:7: is of ProcessID 13"));
+  EXPECT_THAT(error_of(presentmon + "C,13,16,16\nC,13,16,16\n"),
+              HasSubstr("several windows or programs: A, B.exe, process 12; C, process 13"));
   EXPECT_THAT(error_of(presentmon, "ms"), HasSubstr("game.csv:2: has no column ms"));
-  EXPECT_THAT(error_of("time,frame\n1,16\n"), HasSubstr("game.csv:1: has no column MsBetweenPresents"));
+  EXPECT_THAT(error_of("time,frame\n1,16\n"), HasSubstr("game.csv:1: has no column of frame times"));
   EXPECT_THAT(error_of("1,16\n2,17\n"), HasSubstr("game.csv:1: holds numbers where"));
   EXPECT_THAT(error_of("\x7F"
                        "ELF\n1\n"),
               HasSubstr("game.csv:1: is no text"));
   EXPECT_THAT(error_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(error_of("16.7\n"), HasSubstr("holds 1 frames"));
+  EXPECT_THAT(error_of("16.7\n"), HasSubstr("fewer than two frame times"));
+  EXPECT_THAT(error_of("16.7\n\n17\n"), HasSubstr("game.csv:2: is blank inside the table"));
+  EXPECT_THAT(error_of("TimeInSeconds,FrameTime\n0,16\n1,16\n2,16\n"),
+              HasSubstr("does not hold every frame"));
+  const auto run = [](const std::string& data) { return R"({"Runs": [{"CaptureData": {)" + data + "}}]}"; };
+  EXPECT_THAT(error_of(R"({"Runs": [{"Capt)"), HasSubstr("game.csv: is no whole JSON text"));
+  EXPECT_THAT(error_of("{}"), HasSubstr("game.csv: is JSON without the list Runs"));
+  EXPECT_THAT(error_of(run(R"("MsBetweenPresents": [16, 17], "Dropped": [true])")),
+              HasSubstr("game.csv: run 1: has 2 values of MsBetweenPresents and 1 of Dropped"));
+  EXPECT_THAT(error_of(run(R"("MsBetweenPresents": [16, "x"])")),
+              HasSubstr("run 1, frame 2, MsBetweenPresents"));
+  EXPECT_THAT(error_of(run(R"("MsBetweenPresents": [16, 17, 99999])")),
+              HasSubstr("game.csv: run 1, frame 3: \"99999\""));
   EXPECT_THAT(error_of("16.7\n17\n", "", 5), HasSubstr("lasts 0.034 s"));
 }
