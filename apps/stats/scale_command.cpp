@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/options.hpp"
@@ -65,6 +67,23 @@ void check_scale_options(const ScaleCommand& command, bool database) {
   if (command.incomplete) refuse("--incomplete", "a CSV file");
 }
 
+/// base::Error if the JSON file would overwrite an input, or both inputs are one file.
+void check_files(const ScaleCommand& command, bool database) {
+  if (database) return check_apart(command.input, {{"--json", command.json}});
+  const auto same = [](const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() &&
+           std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
+  };
+  if (same(command.ratings, command.input))
+    throw base::Error("--ratings " + command.ratings, "is the file of choices",
+                      "give a CSV file with the columns condition and score, or leave it out");
+  for (const auto& [input, what] :
+       {std::pair(command.input, "choices"), std::pair(command.ratings, "ratings")})
+    if (same(command.json, input))
+      throw base::Error("--json " + command.json, std::string("is the file of ") + what,
+                        "give the output a path of its own");
+}
+
 std::string text_of(const study::Json& value) { return value.get<std::string>(); }
 
 std::string decimals(const study::Json& value, int digits) {
@@ -107,6 +126,28 @@ std::vector<ScaleLine> lines_of(const study::Json& scale, const std::string& ref
   return out;
 }
 
+/// Each pair once, in the order in which it is first proposed, with the number of answers to ask.
+void print_next(const study::Json& next) {
+  struct Asked {
+    std::string pair;
+    int answers = 0;
+    double bits = 0;
+  };
+  std::vector<Asked> list;
+  for (const auto& one : next) {
+    const std::string pair = text_of(one.at("a")) + ", " + text_of(one.at("b"));
+    auto found =
+        std::find_if(list.begin(), list.end(), [&](const Asked& asked) { return asked.pair == pair; });
+    if (found == list.end()) found = list.insert(list.end(), Asked{pair});
+    ++found->answers;
+    found->bits += one.at("bits").get<double>();
+  }
+  std::printf("pairs to ask next, with the gain of these answers:\n");
+  for (const Asked& one : list)
+    std::printf("  %s: %d %s, %.4f bits\n", one.pair.c_str(), one.answers,
+                one.answers == 1 ? "answer" : "answers", one.bits);
+}
+
 void print_scale(const study::Json& json, const study::Json& scale, const std::string& reference) {
   const std::string name = text_of(scale.at("name"));
   if (!name.empty()) std::printf("\n%s %s\n", text_of(json.at("by")).c_str(), name.c_str());
@@ -139,10 +180,7 @@ void print_scale(const study::Json& json, const study::Json& scale, const std::s
         decimals(rating.at("slope"), 2).c_str(), decimals(rating.at("se"), 2).c_str(),
         rating.at("slope").get<double>() < 0 ? "; below 0, ratings and choices contradict each other" : "");
   if (scale.at("next").empty()) return;
-  std::printf("pairs to ask next, with the gain of one more answer:\n");
-  for (const auto& one : scale.at("next"))
-    std::printf("  %s, %s: %s bits\n", text_of(one.at("a")).c_str(), text_of(one.at("b")).c_str(),
-                decimals(one.at("bits"), 4).c_str());
+  print_next(scale.at("next"));
 }
 
 void print_observers(const study::Json& json) {
@@ -183,7 +221,7 @@ void check_reference(const study::Json& json, const std::string& reference) {
 void run_scale(const ScaleCommand& command) {
   const bool database = is_database(command.input);
   check_scale_options(command, database);
-  check_apart(command.input, {{"--json", command.json}, {"--ratings", command.ratings}});
+  check_files(command, database);
   // The database registers files with people's data, because a withdrawal must delete them. The register is
   // opened before the data are read, and only if a file is to be written.
   std::optional<study::RegisteredFiles> files;

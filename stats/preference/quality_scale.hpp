@@ -64,6 +64,11 @@ struct ScaleOptions {
   double confidence = 0.95;
 };
 
+/// Reasons why there is no scale, whose remedies differ from those of other reasons.
+inline constexpr const char* no_order_bias = "the orders of showing do not determine the order bias";
+inline constexpr const char* no_common_unit =
+    "no two of the rated conditions are linked by choices, so that ratings have no unit in JOD";
+
 /// Difference of two conditions, JOD. `se`, `ci` and `p` are over people (jackknife); empty without
 /// intervals.
 struct ScaleDifference {
@@ -116,8 +121,8 @@ void score_observers(std::vector<ScaleObserver>& observers);
 std::vector<std::vector<int>> linked_groups(const ScaleData& data);
 
 /// Fits the scale. Refused: fewer than two conditions; no choice (ratings alone have no JOD); several
-/// linked_groups(); ratings of conditions of which no two are linked by choices; ratings that differ where
-/// choices do not, so that k has no bound; an infinite estimate (the reason names conditions as "item 1",
+/// linked_groups(); no_common_unit; no_order_bias; ratings that differ where choices do not, so that k has no
+/// bound; an infinite estimate (the reason names conditions as "item 1",
 /// from 1). Intervals need three people, and a fit without each of them. std::invalid_argument: a condition
 /// outside [0, conditions), equal conditions in a pair, a count that is negative or not finite, a confidence
 /// outside (0, 1).

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -96,8 +97,30 @@ Vector wins_of(const ScaleAnswers& answers, int conditions) {
   return wins;
 }
 
+/// True if some values of the conditions differ by 1 in every pair, the first above the second: such values
+/// and a bias towards the condition shown first predict the same choices.
+bool orders_stand_for_values(const ScaleAnswers& answers, int conditions) {
+  std::vector<std::optional<int>> value(at(conditions));
+  for (int start = 0; start < conditions; ++start) {
+    if (value[at(start)]) continue;
+    value[at(start)] = 0;
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (const PairCount& pair : answers.pairs) {
+        auto& first = value[at(pair.first)];
+        auto& second = value[at(pair.second)];
+        if (first && second && *first != *second + 1) return false;
+        if (first.has_value() == second.has_value()) continue;
+        grown = true;
+        (first ? second : first) = first ? *first - 1 : *second + 1;
+      }
+    }
+  }
+  return true;
+}
+
 /// Why the answers do not determine one finite scale; empty if they do.
-std::string undetermined(const ScaleAnswers& answers, const ScaleData& data, ScalePrior prior) {
+std::string undetermined(const ScaleAnswers& answers, const ScaleData& data, const ScaleOptions& options) {
   if (data.conditions < 2) return "fewer than two conditions";
   if (answers.pairs.empty()) return "no choice between two conditions: ratings alone have no scale in JOD";
   const auto groups = answer_groups(answers, data.conditions, true);
@@ -110,13 +133,15 @@ std::string undetermined(const ScaleAnswers& answers, const ScaleData& data, Sca
         if (std::find(group.begin(), group.end(), one.condition) != group.end()) rated.insert(one.condition);
       return rated.size() > 1;
     });
-    if (!any) return "choices link no two of the conditions that were rated, so that ratings have no unit";
+    if (!any) return no_common_unit;
     const bool varied = std::any_of(answers.ratings.begin(), answers.ratings.end(), [&](const auto& one) {
       return one.score != answers.ratings.front().score;
     });
     if (!varied) return "all ratings are equal";
   }
-  if (prior == ScalePrior::Normal) return {};
+  if (options.order_bias && answers.ratings.empty() && orders_stand_for_values(answers, data.conditions))
+    return no_order_bias;
+  if (options.prior == ScalePrior::Normal) return {};
   return connection(wins_of(answers, data.conditions), data.conditions).reason;
 }
 
@@ -126,7 +151,7 @@ std::string unbounded(const Minimum& found, const ScaleLayout& layout) {
   if (!layout.levels.empty() && std::abs(found.x[layout.slope_place()]) > farthest)
     return "ratings tell conditions apart that choices do not, so that the two have no common unit";
   if (layout.order && (!found.converged || std::abs(found.x[layout.order_place()]) > farthest))
-    return "the orders of showing do not determine the order bias";
+    return no_order_bias;
   if (found.converged) return "";
   return layout.levels.empty() ? "the fit did not converge"
                                : "the fit did not converge; choices and ratings may have no common unit";
@@ -238,8 +263,7 @@ std::vector<double> ScaleMaximum::jod() const {
 Result<ScaleMaximum> maximise_scale(const ScaleData& data, const ScaleOptions& options, const int* left_out,
                                     const ScaleMaximum* near) {
   ScaleMaximum out{{data.conditions, options.order_bias}, summed_answers(data, left_out), {}, {}, 0};
-  if (const std::string why = undetermined(out.answers, data, options.prior); !why.empty())
-    return Refusal{why};
+  if (const std::string why = undetermined(out.answers, data, options); !why.empty()) return Refusal{why};
   std::set<int> levels;
   for (const RatingCount& one : out.answers.ratings) levels.insert(one.score);
   out.layout.levels.assign(levels.begin(), levels.end());

@@ -58,6 +58,40 @@ TEST_F(ScaleCommandE2e, EachSceneOfAFileGetsAScaleOfItsOwn) {
   EXPECT_TRUE(one.at("conditions").at(0).at("ci").is_array());
 }
 
+TEST_F(ScaleCommandE2e, APairThatIsProposedOftenStandsOnceWithItsNumber) {
+  write("a.csv", "person,first,second,chosen,count\nP1,a,b,first,6\nP1,a,b,second,4\n");
+  const Ended ended = scale("a.csv --next 3");
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("pairs to ask next, with the gain of these answers:\n  a, b: 3 answers, 0."),
+                    Not(HasSubstr("a, b: 1 answer"))));
+}
+
+TEST_F(ScaleCommandE2e, RemediesFitTheReason) {
+  write("one_order.csv", "person,first,second,chosen\nP1,a,b,first\nP2,a,b,second\nP3,a,b,first\n");
+  for (const char* prior : {"none", "normal"}) {
+    const Ended ended = scale(std::string("one_order.csv --order-bias --prior ") + prior);
+    EXPECT_EQ(ended.exit_code, 1) << ended.out;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("the orders of showing do not determine the order bias"),
+                                 HasSubstr("show pairs in both orders, or leave --order-bias out")));
+  }
+  write("pairs.csv",
+        "person,first,second,chosen\nP1,a,b,first\nP2,b,a,first\nP1,c,d,first\nP2,d,c,first\nP3,a,b,first\n");
+  write("ratings.csv", "person,condition,score\nP1,a,3\nP2,c,5\nP3,c,2\n");
+  const Ended linked = scale("pairs.csv --ratings ratings.csv");
+  EXPECT_EQ(linked.exit_code, 1) << linked.out;
+  EXPECT_THAT(
+      linked.out,
+      AllOf(HasSubstr("no two of the rated conditions are linked by choices, so that ratings have no unit"),
+            HasSubstr("ask choices between rated conditions, at least one, such as a with c")));
+  const Ended same = scale("pairs.csv --ratings ./pairs.csv");
+  EXPECT_EQ(same.exit_code, 1);
+  EXPECT_THAT(same.out, AllOf(HasSubstr("--ratings ./pairs.csv: is the file of choices"),
+                              HasSubstr("with the columns condition and score")));
+  const Ended over = scale("pairs.csv --json pairs.csv");
+  EXPECT_EQ(over.exit_code, 1);
+  EXPECT_THAT(over.out, HasSubstr("--json pairs.csv: is the file of choices"));
+}
+
 TEST_F(ScaleCommandE2e, WithoutPeopleThereAreNoIntervalsAndAWarning) {
   const Ended ended = scale(shared + "vegetables.csv --json s.json");
   ASSERT_EQ(ended.exit_code, 0) << ended.out;

@@ -39,6 +39,28 @@ std::string set_words(const ScaleGroup& group, const std::vector<int>& set) {
                         ", or give only the answers to one part");
 }
 
+/// The first two conditions that were rated.
+std::string rated_pair(const ScaleGroup& group) {
+  std::vector<int> rated;
+  for (const stats::RatingCount& one : group.data.ratings)
+    if (std::find(rated.begin(), rated.end(), one.condition) == rated.end()) rated.push_back(one.condition);
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < rated.size() && i < 2; ++i)
+    words.push_back(base::shortened(group.conditions[static_cast<std::size_t>(rated[i])], 60));
+  return words.size() < 2 ? "one" : "one, such as " + words[0] + " with " + words[1];
+}
+
+/// The remedy for a reason why quality_scale() refuses.
+std::string mend_of(const std::string& reason, const ScaleGroup& group, const stats::ScaleOptions& options) {
+  if (reason == stats::no_order_bias) return "show pairs in both orders, or leave --order-bias out";
+  if (reason == stats::no_common_unit)
+    return "ask choices between rated conditions, at least " + rated_pair(group) +
+           ", or leave the ratings out";
+  return options.prior != stats::ScalePrior::Normal
+             ? "give --prior normal, which holds the scale with a weak prior, or ask more people"
+             : "give more answers, or fewer conditions";
+}
+
 stats::QualityScale fitted(const std::string& place, const ScaleGroup& group,
                            const stats::ScaleOptions& options) {
   const auto parts = stats::linked_groups(group.data);
@@ -46,15 +68,13 @@ stats::QualityScale fitted(const std::string& place, const ScaleGroup& group,
   const auto scale = stats::quality_scale(group.data, options);
   if (scale) return *scale;
   const std::string reason = with_names(scale.reason(), group.conditions);
-  const bool separated = reason.find("every comparison") != std::string::npos;
   if (group.data.pairs.empty())
     throw base::Error(place, "there is " + reason,
                       "add choices between two conditions; vip-stats study and report describe ratings");
+  const bool separated = reason.find("every comparison") != std::string::npos;
   throw base::Error(
       place, separated ? reason + ", so that its place on the scale has no bound" : "no scale: " + reason,
-      options.prior != stats::ScalePrior::Normal
-          ? "give --prior normal, which holds the scale with a weak prior, or ask more people"
-          : "give more answers, or fewer conditions");
+      mend_of(scale.reason(), group, options));
 }
 
 Json order_json(const stats::QualityScale& scale) {
