@@ -70,16 +70,23 @@ void print_sources(const study::ReadImport& read) {
                 base::joined({left.begin(), left.end()}).c_str());
 }
 
-void print_sessions(const study::ReadImport& read, const study::ImportTerms& terms, const std::string& into) {
-  std::size_t trials = 0, answers = 0, framed = 0, stated = 0, incomplete = 0;
+void print_sessions(const study::ReadImport& read, const study::ImportTerms& terms,
+                    const study::Protocol& protocol, const std::string& into) {
+  std::size_t trials = 0, answers = 0, showings = 0, framed = 0, cut = 0, stated = 0, incomplete = 0,
+              test = 0;
   std::set<std::string> people;
   for (const study::ImportedSession& session : read.sessions) {
     people.insert(session.participant);
     incomplete += session.complete ? 0 : 1;
+    test += session.test_data || protocol.test_data ? 1 : 0;
     for (const study::ImportedTrial& trial : session.trials) {
       ++trials;
-      framed += trial.frames ? 1 : 0;
-      stated += !trial.frames && trial.stated.mean ? 1 : 0;
+      for (const study::ImportedShowing& showing : trial.showings) {
+        ++showings;
+        framed += showing.frames ? 1 : 0;
+        cut += showing.frames && showing.frames->cut ? 1 : 0;
+        stated += !showing.frames && showing.stated.mean ? 1 : 0;
+      }
       for (const study::ImportedAnswer& answer : trial.answers) answers += answer.score ? 1 : 0;
     }
   }
@@ -88,8 +95,14 @@ void print_sessions(const study::ReadImport& read, const study::ImportTerms& ter
   if (incomplete > 0)
     std::printf("%zu sessions without all trials count as %s\n", incomplete, terms.incomplete.c_str());
   std::printf(
-      "timing: frames of %zu trials; of %zu only the rates that the source states; of %zu not recorded\n",
-      framed, stated, trials - framed - stated);
+      "timing: frames of %zu showings; of %zu only the rates that the source states; of %zu not recorded\n",
+      framed, stated, showings - framed - stated);
+  if (cut > 0)
+    std::printf("the last line of %zu frame logs does not end, so its row may be cut and is left out\n", cut);
+  if (test > 0)
+    std::printf("test data: %zu of %zu sessions%s; they are never pooled with a study's\n", test,
+                read.sessions.size(),
+                protocol.trial_seconds ? ", as --trial-seconds changes the protocol" : "");
   std::printf("public exports: %s\n", terms.sharing ? "allowed" : "refused");
 }
 
@@ -105,7 +118,7 @@ void import_study(const ImportCommand& command) {
   store.add_import(protocol, terms, read.sessions);
   store.require_journal();
   print_sources(read);
-  print_sessions(read, terms, command.database);
+  print_sessions(read, terms, protocol, command.database);
   const std::vector<std::string> left = store.left_to_clean();
   print_list("Not cleaned up:", left);
   study::check_nothing_left(command.database, left);

@@ -47,11 +47,13 @@ void print_import(const study::SessionRow& session) {
   if (session.imported_from.empty()) return;
   std::printf("    imported from %s, SHA-256 of the source %s\n",
               base::shortened(session.imported_from).c_str(), base::shortened(session.source_sha256).c_str());
-  if (session.not_recorded > 0)
-    std::printf("    timing of %lld trials not recorded\n", static_cast<long long>(session.not_recorded));
-  if (session.not_recorded < session.trials)
-    std::printf("    frames of %lld trials imported; they had no schedule, so none counts as late\n",
-                static_cast<long long>(session.trials - session.not_recorded));
+  const auto line = [](std::int64_t showings, const char* what) {
+    if (showings > 0) std::printf("    %lld showings: %s\n", static_cast<long long>(showings), what);
+  };
+  line(session.showings - session.not_recorded,
+       "frames imported; they had no schedule, so none counts as late");
+  line(session.stated, "frame rates as the source states them; no frame recorded");
+  line(session.not_recorded - session.stated, "timing not recorded");
 }
 
 /// Prints one line for each factor with the trials of each level, such as "hitch: h33 20 of 40, h50 20 of

@@ -22,14 +22,25 @@ struct StatedMoments {
   std::optional<double> mean, mean_arithmetic, sd;
 };
 
-struct ImportedTrial {
+/// One stimulus as it was shown.
+struct ImportedShowing {
   int cell = 0;                       ///< index into Design::cells
-  std::optional<std::string> utc;     ///< time of the answer
-  std::optional<std::int64_t> at_ns;  ///< onset of the stimulus on the source's clock
+  std::optional<std::int64_t> at_ns;  ///< onset on the source's clock
   StatedMoments stated;               ///< used only without `frames`
   std::optional<FrameLog> frames;     ///< none: no frame was recorded
   std::string frames_sha256;          ///< SHA-256 of the frame log; empty without one
+};
+
+struct ImportedTrial {
+  std::vector<ImportedShowing> showings;  ///< one; of a pair two, in their order
+  std::optional<std::string> utc;         ///< time of the answer
   std::vector<ImportedAnswer> answers;
+
+  std::vector<int> cells() const {
+    std::vector<int> out;
+    for (const ImportedShowing& one : showings) out.push_back(one.cell);
+    return out;
+  }
 };
 
 /// One visit of one person, with the trials in the order in which they were shown.

@@ -294,8 +294,8 @@ class Store {
   void refuse_imported(const ImportedSession& session);
   void insert_imported_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
                                const ImportTerms& terms, const ImportedSession& imported);
-  void insert_imported_trial(const Protocol& protocol, const ImportedTrial& trial, std::int64_t session,
-                             std::int64_t trial_id);
+  void insert_imported_showing(const Protocol& protocol, const ImportedShowing& showing, int interval,
+                               std::int64_t session, std::int64_t trial_id);
   void check_newcomer(std::int64_t protocol_id, const SessionPlan& plan);
   void mark_cut_presentations();
   void mark_done(std::int64_t session, std::int64_t unit, const std::string& now,

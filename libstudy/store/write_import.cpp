@@ -35,7 +35,7 @@ std::vector<int> groups_of(const Protocol& protocol, const ImportedSession& sess
   std::vector<int> out;
   for (const ImportedTrial& trial : session.trials) {
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const std::vector<int>& cells) {
-      return std::find(cells.begin(), cells.end(), trial.cell) != cells.end();
+      return std::find(cells.begin(), cells.end(), trial.showings.front().cell) != cells.end();
     });
     out.push_back(
         met.try_emplace(static_cast<std::size_t>(group - groups.begin()), static_cast<int>(met.size()))
@@ -60,7 +60,10 @@ SessionPlan plan_of(const Protocol& protocol, const ImportedSession& session, co
   for (std::size_t i = 0; i < session.trials.size(); ++i) {
     const int position = static_cast<int>(i);
     plan.plan.units.push_back({position, block, position});
-    plan.plan.trials.push_back({position, block, groups[i], session.trials[i].cell, {}, 0});
+    const std::vector<int> cells = session.trials[i].cells();
+    std::optional<int> second;
+    if (cells.size() > 1) second = cells[1];
+    plan.plan.trials.push_back({position, block, groups[i], cells[0], second, 0});
   }
   return plan;
 }
@@ -70,10 +73,10 @@ constexpr double most_length_error = 0.05;
 
 /// Timing of a trial with a frame log. A pattern of intervals, such as hitches, is described, not judged: two
 /// moments do not decide whether it was shown.
-TimingVerdict verdict_of_log(const Protocol& protocol, const ImportedTrial& trial,
+TimingVerdict verdict_of_log(const Protocol& protocol, const ImportedShowing& showing,
                              const PlayedTrial& played) {
-  const FpsSetting& setting = protocol.design.cells.at(static_cast<std::size_t>(trial.cell)).setting;
-  const TimingGrade grade = grade_of_log(*trial.frames);
+  const FpsSetting& setting = protocol.design.cells.at(static_cast<std::size_t>(showing.cell)).setting;
+  const TimingGrade grade = grade_of_log(*showing.frames);
   if (setting.mean <= 0 || has_pattern(setting)) return describe_trial(played, grade);
   TimingVerdict out = judge_trial(setting, protocol.pacing, played, protocol.timing, grade);
   const double logged_s = 1e-9 * static_cast<double>(played.end_ns);
@@ -92,23 +95,23 @@ std::optional<std::int64_t> known_ns(std::int64_t time_ns) {
 
 }  // namespace
 
-void Store::insert_imported_trial(const Protocol& protocol, const ImportedTrial& trial, std::int64_t session,
-                                  std::int64_t trial_id) {
+void Store::insert_imported_showing(const Protocol& protocol, const ImportedShowing& showing, int interval,
+                                    std::int64_t session, std::int64_t trial_id) {
   PlayedTrial played;
   std::optional<TimingVerdict> timing;
-  if (trial.frames) {
-    played = played_of_log(*trial.frames);
-    timing = verdict_of_log(protocol, trial, played);
+  if (showing.frames) {
+    played = played_of_log(*showing.frames);
+    timing = verdict_of_log(protocol, showing, played);
   }
   std::optional<std::int64_t> end_ns;
-  if (timing && trial.at_ns) end_ns = *trial.at_ns + played.end_ns;
+  if (timing && showing.at_ns) end_ns = *showing.at_ns + played.end_ns;
   const std::int64_t presentation =
       Statement(*database_,
                 "INSERT INTO presentation (trial_id, attempt, interval, cell, state, start_ns, end_ns, "
-                "mean_fps, mean_arithmetic_fps, sd_fps, gaze_source) VALUES (?,1,0,?,'played',?,?,?,?,?,"
+                "mean_fps, mean_arithmetic_fps, sd_fps, gaze_source) VALUES (?,1,?,?,'played',?,?,?,?,?,"
                 "'none')")
-          .bind_all(trial_id, trial.cell, trial.at_ns, end_ns, trial.stated.mean,
-                    trial.stated.mean_arithmetic, trial.stated.sd)
+          .bind_all(trial_id, interval, showing.cell, showing.at_ns, end_ns, showing.stated.mean,
+                    showing.stated.mean_arithmetic, showing.stated.sd)
           .run();
   if (!timing) return;
   std::optional<std::string> judged, reason;
@@ -136,7 +139,7 @@ void Store::insert_imported_trial(const Protocol& protocol, const ImportedTrial&
                   known_ns(shown ? frame.times.actual_display_ns - frame.scheduled_ns : -1))
         .run();
   }
-  insert_event(session, presentation, "frames imported", "SHA-256 of the log " + trial.frames_sha256, {});
+  insert_event(session, presentation, "frames imported", "SHA-256 of the log " + showing.frames_sha256, {});
 }
 
 void Store::insert_imported_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
@@ -168,7 +171,8 @@ void Store::insert_imported_session(std::int64_t run_id, std::int64_t protocol_i
   if (imported.observer) input = "observer";
   for (const ImportedTrial& trial : imported.trials) {
     row.step();
-    insert_imported_trial(protocol, trial, session, row.integer(1));
+    for (int interval = 0; const ImportedShowing& showing : trial.showings)
+      insert_imported_showing(protocol, showing, interval++, session, row.integer(1));
     for (const ImportedAnswer& one : trial.answers)
       answer
           .bind_all(row.integer(0), protocol_id, one.question, one.score, one.response_time_s, trial.utc,

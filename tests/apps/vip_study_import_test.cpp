@@ -54,7 +54,7 @@ TEST(VipStudyImportE2e, StudiesOfThreeToolsAreFittedAndReported) {
     ASSERT_EQ(done.exit_code, 0) << done.out;
     EXPECT_THAT(done.out, HasSubstr("6 sessions of 6 people from " + tools[i] + ", 126 trials, 126 answers"));
     EXPECT_THAT(done.out,
-                HasSubstr("frames of 0 trials; of 0 only the rates that the source states; of 126 not"));
+                HasSubstr("frames of 0 showings; of 0 only the rates that the source states; of 126 not"));
 
     // The scores were made with a = 24, b = 0.02.
     const base::Json fit = fit_of(database, folder / (name + ".json"));
@@ -69,7 +69,7 @@ TEST(VipStudyImportE2e, StudiesOfThreeToolsAreFittedAndReported) {
     const auto status = vip_study("status --db " + database.string());
     EXPECT_THAT(status.out, HasSubstr("imported from " + tools[i] + ", SHA-256 of the source " +
                                       base::sha256_of_file(sources + hashes[i])));
-    EXPECT_THAT(status.out, HasSubstr("timing of 21 trials not recorded"));
+    EXPECT_THAT(status.out, HasSubstr("21 showings: timing not recorded"));
     EXPECT_THAT(status.out, HasSubstr("data not shared"));
 
     const fs::path page = folder / (name + ".html");
@@ -134,6 +134,49 @@ TEST(VipStudyImportE2e, TheWayBackGivesTheSameFit) {
   EXPECT_EQ(theirs.at("used").at("by_verdict").dump(), R"({"not recorded":84})");
   EXPECT_THAT(theirs.at("flags").dump(), HasSubstr("timing_stated"));
   EXPECT_THAT(theirs.at("flags").dump(), HasSubstr("4 participants simulated"));
+}
+
+TEST(VipStudyImportE2e, JsonGivesTheFitOfTheCsv) {
+  const study::test::TemporaryFolder folder;
+  ASSERT_EQ(import_from(sources + "jspsych", "jspsych", folder / "csv.db").exit_code, 0);
+  const auto json = import_from(sources + "jspsych_json", "jspsych", folder / "json.db");
+  ASSERT_EQ(json.exit_code, 0) << json.out;
+  EXPECT_THAT(json.out, HasSubstr("6 sessions of 6 people from jsPsych, 126 trials, 126 answers"));
+  EXPECT_THAT(json.out, Not(HasSubstr("test data")));
+  const base::Json ours = fit_of(folder / "csv.db", folder / "csv.json");
+  const base::Json theirs = fit_of(folder / "json.db", folder / "fit.json");
+  for (const char* key : {"a", "b", "a_ci", "b_ci", "n_ratings", "means", "cells", "lack_of_fit"})
+    EXPECT_EQ(ours.at(key).dump(), theirs.at(key).dump()) << key;
+
+  const auto shorter =
+      import_from(sources + "jspsych", "jspsych", folder / "short.db", terms + " --trial-seconds 5");
+  ASSERT_EQ(shorter.exit_code, 0) << shorter.out;
+  EXPECT_THAT(shorter.out, HasSubstr("test data: 6 of 6 sessions, as --trial-seconds changes the protocol"));
+  EXPECT_THAT(vip_study("status --db " + (folder / "short.db").string()).out, HasSubstr(", test data"));
+}
+
+TEST(VipStudyImportE2e, TheWayBackOfPairsGivesTheSameChoices) {
+  const study::test::TemporaryFolder folder;
+  const std::string ours = (folder / "ours.db").string(), back = (folder / "back.db").string();
+  ASSERT_EQ(
+      vip_study("run task2 --db " + ours + " --observer random --participants 3 --seed 3 --trial-seconds 1")
+          .exit_code,
+      0);
+  ASSERT_EQ(vip_study("export --db " + ours + " --csv " + (folder / "csv").string()).exit_code, 0);
+  const auto done =
+      vip_study("import " + (folder / "csv").string() + " --protocol task2 --mapping vip_study_pairs --db " +
+                back + terms + " --trial-seconds 1");
+  ASSERT_EQ(done.exit_code, 0) << done.out;
+  EXPECT_THAT(done.out, HasSubstr("3 sessions of 3 people from vip-study, 30 trials, 30 answers"));
+  const auto scale = [&](const std::string& database, const char* name) {
+    const std::string json = (folder / name).string();
+    const auto ended = vip_stats("scale " + database + " --prior normal --json " + json);
+    EXPECT_EQ(ended.exit_code, 0) << ended.out;
+    return base::Json::parse(base::read_file(json, 1 << 24));
+  };
+  EXPECT_EQ(scale(ours, "a.json").at("scales").dump(), scale(back, "b.json").at("scales").dump());
+  EXPECT_THAT(vip_study("status --db " + back).out,
+              HasSubstr("20 showings: frame rates as the source states them"));
 }
 
 TEST(VipStudyImportE2e, ImportsOnceAndAllOrNothing) {

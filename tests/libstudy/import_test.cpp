@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/store/read/status.hpp"
 #include "libstudy/store/read/task_answers.hpp"
 #include "libstudy/store/salvage/salvage.hpp"
@@ -68,7 +69,7 @@ TEST_F(Import, TrialsStandInTheOrderOfTheirNumbers) {
   ASSERT_EQ(all.sessions.size(), 2u);
   EXPECT_EQ(all.sessions[0].participant, "P01");
   ASSERT_EQ(all.sessions[1].trials.size(), 2u);
-  EXPECT_EQ(all.sessions[1].trials[0].cell, 0);
+  EXPECT_EQ(all.sessions[1].trials[0].cells().at(0), 0);
   EXPECT_EQ(all.sessions[1].trials[0].answers.at(0).score, 2);
   EXPECT_EQ(all.sessions[1].trials[1].answers.at(0).score, 5);
   EXPECT_EQ(all.sources.at(0).sha256, base::sha256_of_file(folder_ / "t.csv"));
@@ -241,9 +242,129 @@ TEST_F(Import, SurvivesADamagedDatabase) {
   EXPECT_EQ(marks(folder_ / "new.db"), before);
 }
 
+const std::string json_columns =
+    "missing = [\"\"]\n[[row]]\ncolumn = \"kind\"\nis = \"rate\"\n"
+    "[columns]\nperson = \"who\"\norder = \"n\"\nmean_fps = \"mean\"\nsd_fps = \"sd\"\n"
+    "[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"a\"\nkey = \"q\"\nresponse_time_s = \"rt\"\n";
+
+TEST_F(Import, JsonIsReadAsTheCsvOfTheSameTrials) {
+  const ImportMapping mapping = read_mapping(write("map.toml", head + json_columns));
+  const auto sessions = [&](const char* name, const std::string& text) {
+    return read_import(two_settings(), mapping, {write(name, text)}).sessions;
+  };
+  const auto csv =
+      sessions("t.csv",
+               "who,n,kind,mean,sd,a,rt\nP01,1,rate,10.0,0,\"{\"\"q\"\": 2}\",1.5\nP01,2,text,,,hi,\n"
+               "P01,3,rate,20,0,,\n");
+  const auto json = sessions(
+      "t.json", R"([{"who": "P01", "n": 1, "kind": "rate", "mean": 10.0, "sd": 0, "a": {"q": 2}, "rt": 1.5},)"
+                R"( {"who": "P01", "n": 2, "kind": "text", "a": "hi", "extra": [1, {"x": null}]},)"
+                R"( {"kind": "rate", "who": "P01", "n": 3, "mean": 20, "sd": 0, "a": null, "rt": null}])");
+  ASSERT_EQ(csv.size(), 1u);
+  ASSERT_EQ(json.size(), 1u);
+  ASSERT_EQ(json[0].trials.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(json[0].trials[i].cells(), csv[0].trials[i].cells());
+    EXPECT_EQ(json[0].trials[i].answers.at(0).score, csv[0].trials[i].answers.at(0).score);
+    EXPECT_EQ(json[0].trials[i].answers.at(0).response_time_s,
+              csv[0].trials[i].answers.at(0).response_time_s);
+  }
+  EXPECT_EQ(json[0].trials[0].answers.at(0).score, 2);
+  EXPECT_FALSE(json[0].trials[1].answers.at(0).score);
+
+  const auto refused = [&](const std::string& text, const char* words) {
+    EXPECT_THAT([&] { sessions("t.json", text); }, ThrowsMessage<base::Error>(HasSubstr(words))) << text;
+  };
+  refused("", "t.json: is no whole JSON text");
+  refused(R"([{"who": "P01", "n": 1, "ki)", "t.json: is no whole JSON text");
+  refused("[{\"who\": \"P\xE9\"}]", "t.json: is no whole JSON text");
+  refused("[]", "t.json: is no JSON list with entries");
+  refused(R"({"trials": []})", "t.json: is no JSON list with entries");
+  refused("[1]", "t.json: entry 1: is no object");
+  refused(R"([{"who": "P01"}])", "has no column");
+  refused(R"([{"who": "P01", "n": 1, "kind": "rate", "mean": "NaN", "sd": 0, "a": {"q": 2}, "rt": 1}])",
+          "t.json: entry 1, column mean: \"NaN\" is no number");
+  refused(R"([{"who": "P01", "n": 1, "kind": "rate", "mean": 10, "sd": 0, "a": {"p": 2}, "rt": 1}])",
+          "t.json: entry 1, column a: ");
+}
+
+/// A table with the pairs of the first group of Task 2, the later cell first, and "chosen" by a method's
+/// name.
+std::string pairs_of(const Protocol& protocol, const std::string& person) {
+  std::string out;
+  int n = 0;
+  for (const auto& [a, b] : pairs_of_group(protocol.design, cell_groups(protocol.design).front())) {
+    const StimulusSpec& one = protocol.design.cells.at(static_cast<std::size_t>(b)).stimulus;
+    const StimulusSpec& other = protocol.design.cells.at(static_cast<std::size_t>(a)).stimulus;
+    ++n;
+    out += person + "," + std::to_string(n) + "," + one.scene + "," + one.method + "," + other.method + "," +
+           (n % 3 == 0 ? one.method : other.method) + "\n";
+  }
+  return out;
+}
+const std::string pair_columns =
+    "[columns]\nperson = \"who\"\norder = \"n\"\nscene = \"scene\"\n[columns.first]\nmethod = \"left\"\n"
+    "[columns.second]\nmethod = \"right\"\n[[answer]]\nquestion = \"preference\"\ncolumn = \"chosen\"\n";
+
+TEST_F(Import, ReadsChoicesBetweenPairs) {
+  const Protocol protocol = read_protocol(find_protocol("task2"));
+  const std::string names = "who,n,scene,left,right,chosen\n",
+                    by_name = "choice_of = [\"left\", \"right\"]\n";
+  const auto imported = [&](const std::string& mapping, const std::string& text) {
+    return read_import(protocol, read_mapping(write("map.toml", head + mapping)), {write("t.csv", text)});
+  };
+  const ReadImport all = imported(pair_columns + by_name, names + pairs_of(protocol, "P01"));
+  const auto& trials = all.sessions.at(0).trials;
+  ASSERT_EQ(trials.size(), 10u);
+  EXPECT_TRUE(all.sessions[0].complete);
+  EXPECT_EQ(trials[0].cells(), (std::vector<int>{1, 0}));
+  EXPECT_EQ(trials[0].answers.at(0).score, 2);
+  EXPECT_EQ(trials[2].answers.at(0).score, 1);
+  Store(folder_ / "s.db", sqlite::Open::Create).add_import(protocol, terms(), all.sessions);
+  const TaskStudy study = read_tasks(folder_ / "s.db");
+  const auto& stored = study.protocols.at(0).sessions.at(0).trials;
+  ASSERT_EQ(stored.size(), 10u);
+  const auto method = [&](int cell) {
+    return protocol.design.cells.at(static_cast<std::size_t>(cell)).stimulus.method;
+  };
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    EXPECT_EQ(stored[i].first.what.method, method(trials[i].cells()[0]));
+    ASSERT_TRUE(stored[i].second);
+    EXPECT_EQ(stored[i].second->what.method, method(trials[i].cells()[1]));
+    EXPECT_EQ(stored[i].answers.at(0).score, trials[i].answers.at(0).score);
+  }
+  EXPECT_EQ(read_status(folder_ / "s.db").sessions.at(0).showings, 20);
+
+  const std::string rows = pairs_of(protocol, "P01"), scene = protocol.design.cells.front().stimulus.scene;
+  const auto refused = [&](const std::string& mapping, const std::string& text, const char* words) {
+    EXPECT_THAT([&] { imported(mapping, names + text); }, ThrowsMessage<base::Error>(HasSubstr(words)));
+  };
+  refused(pair_columns + by_name, "P01,1," + scene + ",HiRes,Ours,Best\n",
+          "\"Best\" names neither stimulus of the pair");
+  refused(pair_columns + by_name, "P01,1," + scene + ",HiRes,HiRes,HiRes\n",
+          "in one trial, which the protocol does not pair");
+  refused(pair_columns + by_name,
+          rows + "P01,11" + rows.substr(rows.find(",1,") + 2, rows.find('\n') - rows.find(",1,") - 1),
+          "t.csv:12: shows cells 0 and 1 to P01 more often");
+  refused(pair_columns, rows, "is no answer to question 'preference'");
+  refused(
+      "[columns]\nperson = \"who\"\norder = \"n\"\nmethod = \"left\"\n[[answer]]\nquestion = \"preference\"\n"
+      "column = \"chosen\"\n",
+      rows, "shows pairs, and the mapping names the columns of one stimulus");
+  refused(
+      "[columns]\nperson = \"who\"\norder = \"n\"\n[columns.first]\nmethod = \"left\"\n[[answer]]\n"
+      "question = \"preference\"\ncolumn = \"chosen\"\n",
+      rows, "second");
+  expect_refusal(head +
+                     "[columns]\nperson = \"who\"\norder = \"n\"\n[columns.first]\nmean_fps = \"mean\"\n"
+                     "[columns.second]\nmean_fps = \"mean\"\n[[answer]]\nquestion = \"satisfaction\"\n"
+                     "column = \"score\"\n",
+                 table, "shows one stimulus in a trial, and the mapping names the columns of two");
+}
+
 TEST_F(Import, IsAllOrNothing) {
   ReadImport all = read(head + columns, table + "P02,1,10,0,3\nP02,2,20,0,5\n");
-  all.sessions[1].trials[1].cell = -1;  // SQLite refuses this cell
+  all.sessions[1].trials[1].showings[0].cell = -1;  // SQLite refuses this cell
   EXPECT_THROW(
       Store(folder_ / "s.db", sqlite::Open::Create).add_import(two_settings(), terms(), all.sessions),
       std::exception);

@@ -44,22 +44,28 @@ int whole_number_in(const SourceTable& table, const SourceTable::Row& row, std::
   return static_cast<int>(number);
 }
 
-CellMatch::CellMatch(const Protocol& protocol, const ImportMapping& mapping, const SourceTable& table)
+CellMatch::CellMatch(const Protocol& protocol, const StimulusColumns& shared, const StimulusColumns& stimulus,
+                     const SourceTable& table)
     : protocol_(protocol), table_(table) {
+  add_keys(shared);
+  if (&shared != &stimulus) add_keys(stimulus);
+}
+
+void CellMatch::add_keys(const StimulusColumns& columns) {
   for (const char* what : {"mean_fps", "sd_fps", "scene", "method", "n_star", "effects"}) {
-    const auto column = mapping.columns.find(what);
-    if (column != mapping.columns.end()) keys_.push_back({what, table.place_of(column->second), 0, false});
+    const auto column = columns.columns.find(what);
+    if (column != columns.columns.end()) keys_.push_back({what, table_.place_of(column->second), 0, false});
   }
   std::vector<std::string> known;
-  for (const DesignFactor& factor : protocol.design.factors) known.push_back(factor.name);
-  for (const auto& [name, column] : mapping.factors) {
+  for (const DesignFactor& factor : protocol_.design.factors) known.push_back(factor.name);
+  for (const auto& [name, column] : columns.factors) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
-      throw base::Error("protocol " + protocol.name, "has no factor " + base::shortened(name),
+      throw base::Error("protocol " + protocol_.name, "has no factor " + base::shortened(name),
                         known.empty()
                             ? "remove [columns.factors] from the mapping"
                             : "correct [columns.factors] of the mapping: " + base::use_one_of(name, known));
-    keys_.push_back({name, table.place_of(column), static_cast<std::size_t>(found - known.begin()), true});
+    keys_.push_back({name, table_.place_of(column), static_cast<std::size_t>(found - known.begin()), true});
   }
 }
 

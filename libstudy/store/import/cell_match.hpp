@@ -13,15 +13,18 @@ namespace study {
 
 class CellMatch {
  public:
-  /// base::Error if the table lacks a column that the mapping names, or the mapping a factor that the
-  /// protocol has not.
-  CellMatch(const Protocol& protocol, const ImportMapping& mapping, const SourceTable& table);
+  /// stimulus: the columns of one stimulus, beside those of `shared`. base::Error if the table lacks a column
+  /// that the mapping names, or the mapping a factor that the protocol has not.
+  CellMatch(const Protocol& protocol, const StimulusColumns& shared, const StimulusColumns& stimulus,
+            const SourceTable& table);
 
   /// Index of the only cell with the row's setting. base::Error at file:line, with the columns, if no cell or
   /// more than one has it.
   int cell_of(const SourceTable::Row& row) const;
 
  private:
+  void add_keys(const StimulusColumns& columns);
+
   struct Key {
     std::string what;  ///< "mean_fps", ..., or the name of a factor
     std::size_t place = 0;

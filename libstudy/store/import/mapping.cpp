@@ -20,11 +20,10 @@ namespace {
 constexpr std::size_t most_mapping_bytes = 1 << 20;
 constexpr std::size_t most_tool_bytes = 60;
 
-constexpr std::array column_keys{
-    "person",      "visit",    "order",   "mean_fps",       "sd_fps",
-    "scene",       "method",   "n_star",  "effects",        "observer",
-    "test_data",   "answered", "started", "shown_mean_fps", "shown_mean_arithmetic_fps",
-    "shown_sd_fps"};
+constexpr std::array column_keys{"person", "visit", "order", "observer", "test_data", "answered", "started"};
+constexpr std::array stimulus_keys{"mean_fps",    "sd_fps",  "scene",          "method",
+                                   "n_star",      "effects", "shown_mean_fps", "shown_mean_arithmetic_fps",
+                                   "shown_sd_fps"};
 
 /// Names of a column of times: `key`_s or `key`_ms.
 TimeColumn time_column(const TomlTable& table, const std::string& key) {
@@ -57,6 +56,12 @@ AnswerColumn answer_column(const TomlTable& table) {
   out.question = table.string("question");
   out.column = table.string("column");
   out.key = table.string_or("key", "");
+  if (table.has("choice_of")) {
+    out.choice_of = table.strings("choice_of");
+    if (out.choice_of.size() != 2)
+      table.fail("choice_of", "does not name two columns",
+                 "name the column of what was shown first, then that of what was shown second");
+  }
   out.add = static_cast<int>(table.integer_or("add", 0, {-1000, 1000}));
   if (table.has("scores")) {
     const TomlTable scores = table.table("scores");
@@ -65,11 +70,38 @@ AnswerColumn answer_column(const TomlTable& table) {
     if (out.scores.empty()) table.fail("scores", "names no text", "write TEXT = SCORE, or remove the table");
     if (out.add != 0) table.fail("add", "is given beside scores", "write the final scores");
   }
+  if (!out.choice_of.empty() && (out.add != 0 || !out.scores.empty()))
+    table.fail("choice_of", "is given beside add or scores",
+               "remove those: the answer is 1 for what was shown first and 2 for what was shown second");
   out.when = conditions(table, "when");
   const TimeColumn time = time_column(table, "response_time");
   out.response_time_column = time.column;
   out.response_time_unit_s = time.unit_s;
   return out;
+}
+
+void read_stimulus(const TomlTable& columns, StimulusColumns& out) {
+  for (const char* key : stimulus_keys)
+    if (columns.has(key)) out.columns[key] = columns.string(key);
+  if (!columns.has("factors")) return;
+  const TomlTable factors = columns.table("factors");
+  for (const std::string& name : factors.keys()) out.factors[name] = factors.string(name);
+}
+
+/// Reads [columns.first] and [columns.second], the two stimuli of a pair.
+void read_pair(const TomlTable& columns, ImportMapping& out) {
+  for (const auto& [key, stimulus] : {std::pair("first", &out.first), std::pair("second", &out.second)}) {
+    if (columns.has(key)) read_stimulus(columns.table(key), *stimulus);
+    if (out.pairs() && stimulus->empty())
+      columns.fail(key, "names no column, and the other stimulus of the pair has some",
+                   "name the columns of both under [columns.first] and [columns.second]");
+  }
+  if (!out.pairs()) return;
+  for (const char* key : stimulus_keys)
+    if (out.stimulus.columns.contains(key) &&
+        (out.first.columns.contains(key) || out.second.columns.contains(key)))
+      columns.fail(key, "stands in [columns] and in a table of one stimulus",
+                   "keep it in [columns] if one column holds it for both, else in both tables");
 }
 
 void read_columns(const TomlTable& root, ImportMapping& out) {
@@ -79,10 +111,8 @@ void read_columns(const TomlTable& root, ImportMapping& out) {
   for (const char* key : column_keys)
     if (columns.has(key)) out.columns[key] = columns.string(key);
   out.onset = time_column(columns, "onset");
-  if (columns.has("factors")) {
-    const TomlTable factors = columns.table("factors");
-    for (const std::string& name : factors.keys()) out.factors[name] = factors.string(name);
-  }
+  read_stimulus(columns, out.stimulus);
+  read_pair(columns, out);
   if (out.only_person.empty() && !out.columns.contains("person"))
     columns.fail("person",
                  "is missing: without a column of people, the trials of several people would count as one's",
@@ -100,7 +130,12 @@ void read_columns(const TomlTable& root, ImportMapping& out) {
 void read_frames(const TomlTable& root, ImportMapping& out) {
   if (!root.has("frames")) return;
   const TomlTable frames = root.table("frames");
-  out.frames_file = frames.string("file");
+  if (out.pairs()) {
+    out.first.frames_file = frames.string("first_file");
+    out.second.frames_file = frames.string("second_file");
+  } else {
+    out.stimulus.frames_file = frames.string("file");
+  }
   out.frames_column = frames.string_or("column", "");
   out.frames_may_lack = frames.boolean_or("may_lack", false);
 }
@@ -132,7 +167,12 @@ ImportMapping read_mapping(const fs::path& file) {
   out.tool = root.string("tool");
   if (out.tool.empty() || out.tool.size() > most_tool_bytes || !base::is_plain_line(out.tool))
     root.fail("tool", "is no name of a program", "write 1 to 60 bytes of text, such as \"PsychoPy\"");
-  out.files = root.string_or("files", "");
+  if (root.has("files")) {
+    if (root.is_text("files"))
+      out.files = {root.string("files")};
+    else
+      out.files = root.strings("files");
+  }
   if (root.has("sharing")) out.sharing = root.choice("sharing", {"allowed", "refused"});
   out.consent = root.string_or("consent", "");
   if (root.has("incomplete")) out.incomplete = root.choice("incomplete", {"stopped", "dropped out"});

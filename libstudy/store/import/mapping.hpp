@@ -20,7 +20,10 @@ struct RowCondition {
 struct AnswerColumn {
   std::string question;  ///< id of the question in the protocol
   std::string column;
-  std::string key;                    ///< the field is a JSON object, and the answer is its value of this key
+  std::string key;  ///< the field is a JSON object, and the answer is its value of this key
+  /// Two columns, of what was shown first and second: the answer is 1 if the field equals that of the first,
+  /// 2 if it equals that of the second. Empty: the field itself is the answer.
+  std::vector<std::string> choice_of;
   int add = 0;                        ///< added to a number, such as 1 where a scale is counted from 0
   std::map<std::string, int> scores;  ///< the score of each text; empty: the field holds numbers
   std::vector<RowCondition> when;     ///< conditions on rows that hold this answer
@@ -34,10 +37,22 @@ struct TimeColumn {
   double unit_s = 1;
 };
 
+/// Columns that say what one stimulus was.
+struct StimulusColumns {
+  /// "mean_fps", "sd_fps", "scene", "method", "n_star", "effects", "shown_mean_fps",
+  /// "shown_mean_arithmetic_fps", "shown_sd_fps". A key that the mapping leaves out is absent.
+  std::map<std::string, std::string> columns;
+  std::map<std::string, std::string> factors;  ///< column of each factor of a protocol of format 3
+  /// Path of the frame log, with {column} for the text in a column; empty: none.
+  std::string frames_file;
+
+  bool empty() const { return columns.empty() && factors.empty(); }
+};
+
 struct ImportMapping {
-  std::string text, sha256;  ///< the file, and its hash
-  std::string tool;          ///< the program that wrote the tables
-  std::string files;         ///< name of the tables in a folder; "*" stands for any characters; empty: none
+  std::string text, sha256;            ///< the file, and its hash
+  std::string tool;                    ///< the program that wrote the tables
+  std::vector<std::string> files;      ///< names of the tables in a folder; "*" stands for any characters
   std::optional<std::string> sharing;  ///< "allowed" or "refused"
   std::string consent;                 ///< where the consent to take part is recorded; empty: not stated
   std::string incomplete;              ///< "stopped" or "dropped out"; empty: refuse incomplete sessions
@@ -49,18 +64,23 @@ struct ImportMapping {
   std::string only_person;  ///< all rows are of this person; empty: `columns` names the person's column
   std::vector<RowCondition> rows;
 
-  /// Columns by what they hold: "person", "visit", "order", "mean_fps", "sd_fps", "scene", "method",
-  /// "n_star", "effects", "observer", "test_data", "answered", "started", "shown_mean_fps",
-  /// "shown_mean_arithmetic_fps", "shown_sd_fps". A key that the mapping leaves out is absent.
+  /// Columns by what they hold: "person", "visit", "order", "observer", "test_data", "answered", "started". A
+  /// key that the mapping leaves out is absent.
   std::map<std::string, std::string> columns;
-  std::map<std::string, std::string> factors;  ///< column of each factor of a protocol of format 3
-  TimeColumn onset;
+  StimulusColumns stimulus;       ///< of the only stimulus, or of what both of a pair have
+  StimulusColumns first, second;  ///< of the two of a pair; empty: trials show one stimulus
+  TimeColumn onset;               ///< of the stimulus, or of the first
   std::vector<AnswerColumn> answers;
 
-  std::string
-      frames_file;  ///< path of a trial's frame log, with {column} for the text in a column; empty: none
   std::string frames_column;     ///< column of the frame log; empty: the usual ones (read_frame_logs())
   bool frames_may_lack = false;  ///< true: a trial without a frame log has no recorded timing
+
+  bool pairs() const { return !first.empty() || !second.empty(); }
+  /// The stimuli of a trial, in their order.
+  std::vector<const StimulusColumns*> stimuli() const {
+    if (!pairs()) return {&stimulus};
+    return {&first, &second};
+  }
 };
 
 /// Returns the given path if the file exists, else a mapping that ships with the project, by its name alone

@@ -33,11 +33,23 @@ const Block& block_of(const Protocol& protocol) {
                         "describe the study by a protocol with one block of kind stimulus");
     found = &block;
   }
-  if (!found || protocol.design.pairs)
-    throw base::Error("protocol " + protocol.name,
-                      found ? "shows pairs, which import does not read" : "has no stimulus block",
-                      "give a protocol whose trials show one stimulus each");
+  if (!found)
+    throw base::Error("protocol " + protocol.name, "has no stimulus block",
+                      "give a protocol that shows stimuli");
   return *found;
+}
+
+/// Refuses a mapping with another number of stimuli in a trial than the protocol.
+void check_stimuli(const Protocol& protocol, const ImportMapping& mapping) {
+  const bool pairs = protocol.design.pairs;
+  if (pairs == mapping.pairs()) return;
+  throw base::Error("protocol " + protocol.name,
+                    pairs ? "shows pairs, and the mapping names the columns of one stimulus"
+                          : "shows one stimulus in a trial, and the mapping names the columns of two",
+                    pairs
+                        ? "name the columns of both under [columns.first] and [columns.second] of the mapping"
+                        : "name the columns under [columns] of the mapping, without [columns.first] and "
+                          "[columns.second]");
 }
 
 /// The scored questions that the block's trials ask.
@@ -71,25 +83,46 @@ void check_answers_of(const ImportMapping& mapping, const std::vector<const Ques
           "add [[answer]] with question = \"" + id + "\" and its column, or list it under not_asked");
 }
 
-/// Number of trials of each cell that a session of the protocol shows, and of groups of cells.
+/// Refuses a pair of cells that the protocol does not show together. `cells`: ascending.
+void check_pair(const Design& design, const std::vector<std::vector<int>>& groups, const PlacedTrial& trial,
+                const std::vector<int>& cells) {
+  if (cells.size() < 2) return;
+  for (const auto& group : groups)
+    for (const auto& [one, other] : pairs_of_group(design, group))
+      if (std::minmax(one, other) == std::pair<const int&, const int&>(cells[0], cells[1])) return;
+  throw base::Error(trial.place,
+                    "shows cells " + std::to_string(cells[0]) + " and " + std::to_string(cells[1]) +
+                        " in one trial, which the protocol does not pair",
+                    "correct the row, or give the protocol that the study followed; vip-study check lists "
+                    "its settings");
+}
+
+/// Refuses more trials of a cell or a pair than a session of the protocol shows, and more groups of cells.
 void check_trials(const Protocol& protocol, const ImportMapping& mapping, Visit& visit) {
   const Design& design = protocol.design;
   const auto groups = cell_groups(design);
-  std::map<int, int> shown;
+  std::map<std::vector<int>, int> shown;  // number of trials of a cell, or of a pair in either order
+  std::set<int> cells;
   for (const auto& [order, trial] : visit.trials) {
-    const int times = ++shown[trial.trial.cell];
+    auto what = trial.trial.cells();
+    std::sort(what.begin(), what.end());
+    cells.insert(what.begin(), what.end());
+    check_pair(design, groups, trial, what);
+    const int times = ++shown[what];
     if (!design.procedure && times > design.repetitions)
       throw base::Error(
           trial.place,
-          "shows cell " + std::to_string(trial.trial.cell) + " to " + visit.session.participant +
-              " more often than protocol " + protocol.name + " (" + std::to_string(design.repetitions) +
-              "), in visit " + std::to_string(visit.session.visit),
+          "shows cell" +
+              (what.size() > 1 ? "s " + std::to_string(what[0]) + " and " + std::to_string(what[1])
+                               : " " + std::to_string(what[0])) +
+              " to " + visit.session.participant + " more often than protocol " + protocol.name + " (" +
+              std::to_string(design.repetitions) + "), in visit " + std::to_string(visit.session.visit),
           "leave practice and repeated trials out by a [[row]], name the column of the visit, or "
           "give a protocol of format 3 with more repetitions");
   }
   int met = 0;
   for (const auto& group : groups)
-    met += std::any_of(group.begin(), group.end(), [&](int cell) { return shown.contains(cell); });
+    met += std::any_of(group.begin(), group.end(), [&](int cell) { return cells.contains(cell); });
   const auto wanted = static_cast<std::size_t>(trials_of_group(design) * design.groups);
   if (met > design.groups)
     throw base::Error(visit.file.string(),
@@ -126,12 +159,15 @@ std::vector<fs::path> find_sources(const std::vector<fs::path>& named, const Imp
     if (mapping.files.empty())
       throw base::Error(one.string(), "is a folder, and the mapping does not name the tables in it",
                         "write files = \"NAME.csv\" in the mapping, or name the tables themselves");
+    const auto wanted = [&](const std::string& name) {
+      return std::any_of(mapping.files.begin(), mapping.files.end(),
+                         [&](const std::string& pattern) { return is_named(name, pattern); });
+    };
     std::vector<fs::path> found;
     for (const auto& entry : fs::recursive_directory_iterator(one))
-      if (entry.is_regular_file() && is_named(entry.path().filename().string(), mapping.files))
-        found.push_back(entry.path());
+      if (entry.is_regular_file() && wanted(entry.path().filename().string())) found.push_back(entry.path());
     if (found.empty())
-      throw base::Error(one.string(), "holds no file " + base::shortened(mapping.files),
+      throw base::Error(one.string(), "holds no file " + base::shortened(base::joined(mapping.files)),
                         "correct `files` in the mapping, or name the tables themselves");
     std::sort(found.begin(), found.end());
     out.insert(out.end(), found.begin(), found.end());
@@ -142,6 +178,7 @@ std::vector<fs::path> find_sources(const std::vector<fs::path>& named, const Imp
 ReadImport read_import(const Protocol& protocol, const ImportMapping& mapping,
                        const std::vector<fs::path>& files) {
   const auto asked = asked_in(protocol, block_of(protocol));
+  check_stimuli(protocol, mapping);
   check_answers_of(mapping, asked);
   ReadImport out;
   Visits visits;
@@ -158,12 +195,13 @@ ReadImport read_import(const Protocol& protocol, const ImportMapping& mapping,
   std::map<std::string, std::string> logs;  // places of the trials, by the hash of their frame log
   for (auto& [key, visit] : visits) {
     for (const auto& [order, trial] : visit.trials) {
-      if (!trial.trial.frames) continue;
-      const auto [same, fresh] = logs.try_emplace(trial.trial.frames_sha256, trial.place);
-      if (!fresh)
-        throw base::Error(
-            trial.place, "has the same frame log as " + same->second,
-            "name the log of each trial: write {COLUMN} in `file` of [frames] for what differs");
+      for (const ImportedShowing& showing : trial.trial.showings) {
+        if (!showing.frames) continue;
+        const auto [same, fresh] = logs.try_emplace(showing.frames_sha256, trial.place);
+        if (!fresh)
+          throw base::Error(trial.place, "has the same frame log as " + same->second,
+                            "name the log of each stimulus: write {COLUMN} in [frames] for what differs");
+      }
     }
     check_trials(protocol, mapping, visit);
     if (key.first != person) first = visit.session.source_sha256;

@@ -26,7 +26,7 @@ struct ReadImport {
 };
 
 /// The tables that the user named: files as they are; of a folder all files, in its subfolders too, whose
-/// name is ImportMapping::files. base::Error for a folder without such a file, and for a missing file.
+/// name is among ImportMapping::files. base::Error for a folder without such a file, and for a missing file.
 std::vector<std::filesystem::path> find_sources(const std::vector<std::filesystem::path>& named,
                                                 const ImportMapping& mapping);
 
@@ -34,8 +34,9 @@ std::vector<std::filesystem::path> find_sources(const std::vector<std::filesyste
 /// file:line for a row that matches no cell or several, an answer that the question does not take, a trial
 /// that the protocol does not show as often, an invalid participant code, a time in the future, and a frame
 /// log that cannot be read; and if two tables hold the same bytes or the same visit of a person. base::Error
-/// for a protocol with pairs, and for a session without all trials of the protocol unless the mapping says
-/// how such a session ended.
+/// for a mapping of pairs and a protocol without them, or the reverse, for a pair that the protocol does not
+/// show, and for a session without all trials of the protocol unless the mapping says how such a session
+/// ended.
 ReadImport read_import(const Protocol& protocol, const ImportMapping& mapping,
                        const std::vector<std::filesystem::path>& files);
 

@@ -29,11 +29,8 @@ bool has(const std::vector<std::string>& list, const std::string& one) {
 
 TableReader::TableReader(const Protocol& protocol, const ImportMapping& mapping,
                          const std::vector<const Question*>& asked, const SourceTable& table, Visits& visits)
-    : mapping_(mapping),
-      table_(table),
-      visits_(visits),
-      match_(protocol, mapping, table),
-      rows_(placed(mapping.rows)) {
+    : mapping_(mapping), table_(table), visits_(visits), rows_(placed(mapping.rows)) {
+  for (const StimulusColumns* one : mapping.stimuli()) stimuli_.push_back(placed_stimulus(protocol, *one));
   for (const auto& [key, column] : mapping.columns) places_[key] = table.place_of(column);
   if (!mapping.onset.column.empty()) onset_ = table.place_of(mapping.onset.column);
   for (const AnswerColumn& one : mapping.answers) {
@@ -41,8 +38,22 @@ TableReader::TableReader(const Protocol& protocol, const ImportMapping& mapping,
     for (const Question* question : asked)
       if (question->id == one.question) answer.question = question;
     if (!one.response_time_column.empty()) answer.response_time = table.place_of(one.response_time_column);
+    for (const std::string& column : one.choice_of) answer.choice_of.push_back(table.place_of(column));
+    if (!answer.choice_of.empty() && !mapping.pairs())
+      throw base::Error("[[answer]] of question '" + one.question + "' in the mapping",
+                        "has choice_of, and the mapping's trials show one stimulus",
+                        "name the columns of both stimuli under [columns.first] and [columns.second]");
     answers_.push_back(std::move(answer));
   }
+}
+
+TableReader::PlacedStimulus TableReader::placed_stimulus(const Protocol& protocol,
+                                                         const StimulusColumns& columns) const {
+  PlacedStimulus out{CellMatch(protocol, mapping_.stimulus, columns, table_), {}, columns.frames_file};
+  for (const StimulusColumns* one : {&mapping_.stimulus, &columns})
+    for (const auto& [key, column] : one->columns)
+      if (key.starts_with("shown_")) out.stated[key] = table_.place_of(column);
+  return out;
 }
 
 TableReader::Conditions TableReader::placed(const std::vector<RowCondition>& conditions) const {
@@ -74,16 +85,21 @@ bool TableReader::takes(const Conditions& conditions, const Row& row) {
 std::vector<std::string> TableReader::left_columns() const {
   std::set<std::string> used{mapping_.onset.column};
   for (const auto& [key, column] : mapping_.columns) used.insert(column);
-  for (const auto& [key, column] : mapping_.factors) used.insert(column);
+  std::string files;
+  for (const StimulusColumns* one : {&mapping_.stimulus, &mapping_.first, &mapping_.second}) {
+    for (const auto& [key, column] : one->columns) used.insert(column);
+    for (const auto& [key, column] : one->factors) used.insert(column);
+    files += one->frames_file + "\n";
+  }
   for (const RowCondition& one : mapping_.rows) used.insert(one.column);
   for (const AnswerColumn& one : mapping_.answers) {
     used.insert({one.column, one.response_time_column});
+    used.insert(one.choice_of.begin(), one.choice_of.end());
     for (const RowCondition& condition : one.when) used.insert(condition.column);
   }
   std::vector<std::string> out;
   for (const std::string& name : table_.names())
-    if (!used.contains(name) && mapping_.frames_file.find("{" + name + "}") == std::string::npos)
-      out.push_back(name);
+    if (!used.contains(name) && files.find("{" + name + "}") == std::string::npos) out.push_back(name);
   return out;
 }
 
@@ -148,9 +164,10 @@ void TableReader::add(const Row& row, std::size_t number) {
   Visit& visit = visit_of(row);
   const auto order_at = place("order");
   const double order = order_at ? number_in(table_, row, *order_at) : static_cast<double>(number);
-  const int cell = match_.cell_of(row);
+  std::vector<int> cells;
+  for (const PlacedStimulus& one : stimuli_) cells.push_back(one.match.cell_of(row));
   const auto known = visit.trials.find(order);
-  if (known != visit.trials.end() && known->second.trial.cell != cell)
+  if (known != visit.trials.end() && known->second.trial.cells() != cells)
     fail_at_field(table_, row, *order_at,
                   "is the number of another trial of " + visit.session.participant + ", which begins at " +
                       known->second.place + " with another setting",
@@ -158,7 +175,7 @@ void TableReader::add(const Row& row, std::size_t number) {
   PlacedTrial& trial =
       known != visit.trials.end()
           ? known->second
-          : visit.trials.emplace(order, PlacedTrial{new_trial(row, cell), table_.place(row)}).first->second;
+          : visit.trials.emplace(order, PlacedTrial{new_trial(row, cells), table_.place(row)}).first->second;
   bool any = false;
   for (const PlacedAnswer& answer : answers_) {
     if (!takes(answer.when, row)) continue;
@@ -170,19 +187,26 @@ void TableReader::add(const Row& row, std::size_t number) {
                       "add an [[answer]] for it, or leave the row out by a [[row]]");
 }
 
-ImportedTrial TableReader::new_trial(const Row& row, int cell) const {
+ImportedTrial TableReader::new_trial(const Row& row, const std::vector<int>& cells) const {
   ImportedTrial out;
-  out.cell = cell;
   if (const auto at = place("answered")) out.utc = utc_in(table_, row, *at, mapping_.utc_offset);
-  out.at_ns = onset_in(row);
-  out.stated = {stated("shown_mean_fps", row, slowest_fps),
-                stated("shown_mean_arithmetic_fps", row, slowest_fps), stated("shown_sd_fps", row, 0)};
+  for (std::size_t i = 0; i < cells.size(); ++i) out.showings.push_back(showing(row, stimuli_[i], cells[i]));
+  out.showings.front().at_ns = onset_in(row);
+  return out;
+}
+
+ImportedShowing TableReader::showing(const Row& row, const PlacedStimulus& stimulus, int cell) const {
+  ImportedShowing out;
+  out.cell = cell;
+  out.stated = {stated(stimulus, "shown_mean_fps", row, slowest_fps),
+                stated(stimulus, "shown_mean_arithmetic_fps", row, slowest_fps),
+                stated(stimulus, "shown_sd_fps", row, 0)};
   const bool whole = out.stated.mean.has_value();
   if (out.stated.mean_arithmetic.has_value() != whole || out.stated.sd.has_value() != whole)
     throw base::Error(
         table_.place(row), "states only a part of the frame rate that was shown",
         "give shown_mean_fps (harmonic), shown_mean_arithmetic_fps and shown_sd_fps, or none of them");
-  add_frames(out, row);
+  add_frames(out, stimulus.frames_file, row);
   return out;
 }
 
@@ -194,18 +218,20 @@ std::optional<std::int64_t> TableReader::onset_in(const Row& row) const {
   return std::llround(1e9 * seconds);
 }
 
-std::optional<double> TableReader::stated(const char* key, const Row& row, double least) const {
-  const auto at = place(key);
-  if (!at || row.fields[*at].empty()) return {};
-  const double value = number_in(table_, row, *at);
+std::optional<double> TableReader::stated(const PlacedStimulus& stimulus, const char* key, const Row& row,
+                                          double least) const {
+  const auto found = stimulus.stated.find(key);
+  if (found == stimulus.stated.end() || row.fields[found->second].empty()) return {};
+  const double value = number_in(table_, row, found->second);
   if (value < least)
-    fail_at_field(table_, row, *at, "is no frame rate", "correct the row, or the column in the mapping");
+    fail_at_field(table_, row, found->second, "is no frame rate",
+                  "correct the row, or the column in the mapping");
   return value;
 }
 
-void TableReader::add_frames(ImportedTrial& trial, const Row& row) const {
-  if (mapping_.frames_file.empty()) return;
-  std::string path = mapping_.frames_file;
+void TableReader::add_frames(ImportedShowing& showing, const std::string& frames_file, const Row& row) const {
+  if (frames_file.empty()) return;
+  std::string path = frames_file;
   for (std::size_t i = 0; i < table_.names().size(); ++i) {
     const std::string name = "{" + table_.names()[i] + "}";
     for (auto at = path.find(name); at != std::string::npos; at = path.find(name, at + row.fields[i].size()))
@@ -219,16 +245,9 @@ void TableReader::add_frames(ImportedTrial& trial, const Row& row) const {
         "put it there, correct `file` in [frames], or write may_lack = true in [frames], so that the "
         "timing of such trials counts as not recorded");
   }
-  auto logs = read_frame_logs(file, mapping_.frames_column);
   // Of the columns of one window, the changes of the picture are the better evidence.
-  std::stable_partition(logs.begin(), logs.end(),
-                        [](const FrameLog& log) { return log.kind == Intervals::DisplayChanges; });
-  for (const FrameLog& log : logs)
-    if (log.source != logs.front().source)
-      throw base::Error(file.string(), "holds frames of several windows or programs",
-                        "keep the rows of the window that showed the stimulus");
-  trial.frames = std::move(logs.front());
-  trial.frames_sha256 = base::sha256_of_file(file);
+  showing.frames = read_frame_log(file, mapping_.frames_column, Intervals::DisplayChanges);
+  showing.frames_sha256 = base::sha256_of_file(file);
 }
 
 /// The text of an answer; empty if it stands for no answer.
@@ -271,6 +290,21 @@ int TableReader::score_in(const PlacedAnswer& answer, const Row& row, const std:
   return *score;
 }
 
+/// 1 if the answer names what was shown first, 2 if it names what was shown second.
+int TableReader::chosen_in(const PlacedAnswer& answer, const Row& row, const std::string& text) const {
+  const bool first = row.fields[answer.choice_of[0]] == text,
+             second = row.fields[answer.choice_of[1]] == text;
+  const int score = first ? 1 : 2;
+  if (first == second || !can_be_given(*answer.question, score))
+    fail_at_field(table_, row, answer.column,
+                  first && second ? "names both stimuli of the pair"
+                  : first || second
+                      ? "is a choice between two, which question '" + answer.question->id + "' is not"
+                      : "names neither stimulus of the pair",
+                  "correct the row, or the columns under choice_of of the [[answer]]");
+  return score;
+}
+
 void TableReader::add_answer(ImportedTrial& trial, const PlacedAnswer& answer, const Row& row) const {
   for (const ImportedAnswer& one : trial.answers)
     if (one.question == answer.what->question)
@@ -278,7 +312,8 @@ void TableReader::add_answer(ImportedTrial& trial, const PlacedAnswer& answer, c
                     "keep the answer that counts, or name the column that numbers the trials");
   ImportedAnswer out{answer.what->question, {}, {}};
   const std::string text = text_of(answer, row);
-  if (!text.empty()) out.score = score_in(answer, row, text);
+  if (!text.empty())
+    out.score = answer.choice_of.empty() ? score_in(answer, row, text) : chosen_in(answer, row, text);
   if (out.score && answer.response_time && !row.fields[*answer.response_time].empty()) {
     const double seconds = number_in(table_, row, *answer.response_time) * answer.what->response_time_unit_s;
     if (seconds < 0 || seconds > longest_time_s)

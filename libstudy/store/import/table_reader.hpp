@@ -52,9 +52,17 @@ class TableReader {
     std::size_t column = 0;
     std::optional<std::size_t> response_time;
     Conditions when;
+    std::vector<std::size_t> choice_of = {};
   };
   using Row = SourceTable::Row;
+  /// The columns of one stimulus, with their places.
+  struct PlacedStimulus {
+    CellMatch match;
+    std::map<std::string, std::size_t> stated;  ///< of "shown_mean_fps" and its siblings
+    std::string frames_file;
+  };
 
+  PlacedStimulus placed_stimulus(const Protocol& protocol, const StimulusColumns& columns) const;
   Conditions placed(const std::vector<RowCondition>& conditions) const;
   static bool takes(const Conditions& conditions, const Row& row);
   std::vector<std::string> left_columns() const;
@@ -64,18 +72,21 @@ class TableReader {
   std::optional<std::string> observer_of(const Row& row) const;
   bool is_test(const Row& row) const;
   void add(const Row& row, std::size_t number);
-  ImportedTrial new_trial(const Row& row, int cell) const;
+  ImportedTrial new_trial(const Row& row, const std::vector<int>& cells) const;
+  ImportedShowing showing(const Row& row, const PlacedStimulus& stimulus, int cell) const;
   std::optional<std::int64_t> onset_in(const Row& row) const;
-  std::optional<double> stated(const char* key, const Row& row, double least) const;
-  void add_frames(ImportedTrial& trial, const Row& row) const;
+  std::optional<double> stated(const PlacedStimulus& stimulus, const char* key, const Row& row,
+                               double least) const;
+  void add_frames(ImportedShowing& showing, const std::string& frames_file, const Row& row) const;
   std::string text_of(const PlacedAnswer& answer, const Row& row) const;
   int score_in(const PlacedAnswer& answer, const Row& row, const std::string& text) const;
+  int chosen_in(const PlacedAnswer& answer, const Row& row, const std::string& text) const;
   void add_answer(ImportedTrial& trial, const PlacedAnswer& answer, const Row& row) const;
 
   const ImportMapping& mapping_;
   const SourceTable& table_;
   Visits& visits_;
-  CellMatch match_;
+  std::vector<PlacedStimulus> stimuli_;        ///< in the order in which a trial shows them
   std::map<std::string, std::size_t> places_;  ///< of ImportMapping::columns
   Conditions rows_;
   std::optional<std::size_t> onset_;

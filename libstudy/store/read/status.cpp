@@ -27,7 +27,11 @@ constexpr const char* status_sessions_sql =
     "(SELECT granted FROM permission a WHERE a.session_id = s.session_id AND a.what = 'sharing'), "
     "coalesce(s.imported_from, ''), coalesce(s.source_sha256, ''), "
     "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) WHERE v.session_id = s.session_id "
-    "AND p.state = 'played' AND p.frames IS NULL) "
+    "AND p.state = 'played' AND p.frames IS NULL), "
+    "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) WHERE v.session_id = s.session_id "
+    "AND p.state = 'played' AND p.frames IS NULL AND p.mean_fps IS NOT NULL), "
+    "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) WHERE v.session_id = s.session_id "
+    "AND p.state = 'played') "
     "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
@@ -151,7 +155,9 @@ StudyStatus read_status(const StudyFile& study) {
                                .sharing = flag(row, 15),
                                .imported_from = row.text(16),
                                .source_sha256 = row.text(17),
-                               .not_recorded = row.integer(18)});
+                               .not_recorded = row.integer(18),
+                               .stated = row.integer(19),
+                               .showings = row.integer(20)});
   }
   for (Statement row(*database, "SELECT participant FROM tombstone ORDER BY participant"); row.step();)
     status.withdrawn.push_back(row.text(0));

@@ -51,6 +51,8 @@ struct SessionRow {
   /// Program that recorded the session elsewhere, and the SHA-256 of its source; empty: not imported.
   std::string imported_from = {}, source_sha256 = {};
   std::int64_t not_recorded = 0;  ///< number of showings without a recorded frame
+  std::int64_t stated = 0;        ///< number of those whose frame rate the source of an import states
+  std::int64_t showings = 0;      ///< number of stimuli shown to their end
 };
 
 struct StudyStatus {
