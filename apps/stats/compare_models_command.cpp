@@ -26,6 +26,7 @@ struct CompareCommand {
   std::optional<std::string> exclude;
   std::optional<std::uint64_t> seed;
   int folds = 0;
+  bool folds_given = false;
   bool incomplete = false;
   ChoiceOptions choice;
 
@@ -39,7 +40,14 @@ void print_head(const study::Json& json) {
   std::printf("%s, question \"%s\": %d people, %d answers to %d timings\n",
               words(json.at("protocol"), "name").c_str(), words(json, "question").c_str(),
               json.at("people").get<int>(), json.at("answers").get<int>(), json.at("settings").get<int>());
-  std::printf("exploratory: no analysis plan declares a comparison of models\n");
+  const std::string exploratory = words(json, "why_exploratory");
+  if (!exploratory.empty())
+    std::printf("exploratory: %s\n", exploratory.c_str());
+  else
+    std::printf("confirmatory: %s declares this comparison; %s\n", words(json.at("plan"), "source").c_str(),
+                json.at("plan").at("preregistered").get<bool>()
+                    ? "it was preregistered for this protocol"
+                    : "it names no such protocol, so nothing shows that it is older than the data");
   if (json.at("test_data").get<bool>()) std::printf("note: these are test data, not a study\n");
   if (const int n = json.at("simulated_participants").get<int>(); n > 0)
     std::printf("note: %d participants are simulated\n", n);
@@ -126,32 +134,41 @@ void print_proposals(const study::Json& json) {
 
 void compare_models(const CompareCommand& command) {
   check_apart(command.database, {{"--json", command.json}, {"--plan", command.plan}});
-  stats::AnalysisPlan plan;
-  if (!command.plan.empty()) plan = study::read_plan(command.plan).plan;
+  study::PlanInForce in_force;
+  if (!command.plan.empty()) in_force = study::read_plan(command.plan);
+  stats::AnalysisPlan& plan = in_force.plan;
+  const bool plan_rules = !command.exclude && !command.seed;
   if (command.exclude) plan.exclusions.timing = study::timing_rule_of(*command.exclude);
-  const auto models =
-      command.models.empty() ? study::usual_timing_models() : study::parse_timing_models(command.models);
+  const auto& declared = plan.comparison;
+  const auto models = !command.models.empty() ? study::parse_timing_models(command.models)
+                      : declared              ? study::timing_models(declared->models, command.plan)
+                                              : study::usual_timing_models();
+  ChoiceOptions choice = command.choice;
+  if (declared && choice.question.empty()) choice.question = declared->question;
+  const int folds = declared && !command.folds_given ? declared->folds : command.folds;
   const auto study = study::read_tasks(command.file());
   if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
   std::string mend;
-  const auto chosen =
-      study::choose_rated_task(study, command.choice.selection(study::TaskKind::Pilot, plan), mend);
+  const auto chosen = study::choose_rated_task(study, choice.selection(study::TaskKind::Pilot, plan), mend);
   if (!chosen) throw base::Error(command.database, "no comparison: " + chosen.reason(), mend);
   const auto data = study::collect_rival_data(command.file(), study, *chosen, plan.exclusions);
   if (const auto reason = study::why_no_comparison(data, mend); !reason.empty())
     throw base::Error(command.database, "no comparison: " + reason, mend);
   if (const auto reason = study::why_not_recorded(data, models, mend); !reason.empty())
     throw base::Error(command.database, "no comparison: " + reason, mend);
-  if (command.folds > data.answers.people)
-    throw base::Error("--folds " + std::to_string(command.folds),
-                      "there are only " + std::to_string(data.answers.people) + " people",
-                      "give at most as many groups, or leave it out");
-  const stats::RivalComparisonOptions options{command.folds, command.seed.value_or(plan.seed), {}};
+  if (folds > data.answers.people)
+    throw base::Error(
+        (command.folds_given ? "--folds " : command.plan + ", folds = ") + std::to_string(folds),
+        "there are only " + std::to_string(data.answers.people) + " people",
+        command.folds_given ? "give at most as many groups, or leave it out"
+                            : "give --folds with at most as many groups; the result is then exploratory");
+  const stats::RivalComparisonOptions options{folds, command.seed.value_or(plan.seed), {}};
   const auto comparison = study::compare_timing_models(data, models, options);
   if (!comparison)
     throw base::Error(command.database, "no comparison: " + comparison.reason(),
                       "choose other --models, or collect more answers");
-  auto json = study::compare_models_json(data, models, options, *comparison);
+  auto json = study::compare_models_json(data, models, options, *comparison, in_force,
+                                         study::why_exploratory(data, models, options, plan_rules, in_force));
   if (!study.lacking.empty()) json["incomplete"] = study.lacking;
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
   print_head(json);
@@ -177,17 +194,20 @@ void add_compare_models_command(CLI::App& app) {
       "Models, separated by commas: ptpe, mean_rate, arithmetic_rate, rate_sd, frame_time_sd, p95, "
       "p99, longest, hitches, steps, animation_error, or two of these joined by '+'; without: the usual "
       "eight");
-  add_count(*sub, "--folds", command->folds, 0, 1000,
-            "Groups of people that are left out in turn; 0: each person by themselves");
+  auto* folds = add_count(*sub, "--folds", command->folds, 0, 1000,
+                          "Groups of people that are left out in turn; 0: each person by themselves");
   sub->add_option("--seed", command->seed, "Seed of the groups, instead of the plan's (default: 1)");
   sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
       ->check(output_file());
-  sub->add_option("--plan", command->plan,
-                  "Analysis plan (TOML) with the rules of exclusion; without: the defaults");
+  sub->add_option(
+      "--plan", command->plan,
+      "Analysis plan (TOML) with the rules of exclusion and, as [model_comparison], the question and "
+      "the models; without: the defaults");
   sub->add_option("--exclude", command->exclude,
                   "Trials left out by timing verdict, instead of what the plan says (default: fail)")
       ->check(CLI::IsMember({"none", "fail", "degraded"}));
-  sub->callback([command] {
+  sub->callback([command, folds] {
+    command->folds_given = folds->count() > 0;
     check_given(command->database);
     if (command->folds == 1)
       throw base::Error("--folds 1", "leaves nobody to fit", "give 0, or 2 and more groups");

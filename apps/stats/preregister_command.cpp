@@ -23,16 +23,16 @@ struct PreregisterCommand {
   std::optional<std::uint64_t> seed;
 };
 
-/// Reads the plan. A plan that declares hypotheses needs exactly one protocol; the hypotheses are checked
-/// against the protocol's factors.
+/// Reads the plan. A plan that declares hypotheses or a comparison of models needs exactly one protocol,
+/// against whose factors and questions they are checked.
 stats::AnalysisPlan read_checked_plan(const PreregisterCommand& command) {
   auto plan = study::read_plan(command.plan).plan;
-  if (plan.hypotheses.empty()) return plan;
+  if (plan.hypotheses.empty() && !plan.comparison) return plan;
   if (command.protocols.size() != 1)
     throw base::Error(command.plan,
-                      "declares hypotheses of one study, but " + std::to_string(command.protocols.size()) +
-                          " protocols are given",
-                      "freeze the protocol of the hypotheses by itself");
+                      "declares hypotheses or a comparison of models of one study, but " +
+                          std::to_string(command.protocols.size()) + " protocols are given",
+                      "freeze the protocol of the declared analyses by itself");
   const auto protocol = study::read_protocol(study::find_protocol(command.protocols.front()));
   return study::read_plan(command.plan, &protocol).plan;
 }

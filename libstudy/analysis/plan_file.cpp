@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "libstudy/analysis/plan_comparison.hpp"
 #include "libstudy/analysis/plan_hypotheses.hpp"
 #include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/error.hpp"
@@ -96,8 +97,8 @@ stats::PilotRules read_pilot(const base::TomlTable& table) {
   return rules;
 }
 
-stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::string>& protocols,
-                              const Protocol* protocol) {
+stats::AnalysisPlan read_keys(const base::TomlTable& root, const std::string& file,
+                              std::vector<std::string>& protocols, const Protocol* protocol) {
   stats::AnalysisPlan plan;
   root.integer("format", {1, 1});
   if (root.has("protocols")) protocols = root.strings("protocols");
@@ -125,6 +126,8 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
     for (const auto& question : levels.keys()) plan.levels[question] = levels.number(question);
   }
   plan.hypotheses = read_hypotheses(tables, plan.confidence, protocol);
+  if (root.has("model_comparison"))
+    plan.comparison = read_comparison(root.table("model_comparison"), file, protocol);
   return plan;
 }
 
@@ -176,7 +179,7 @@ PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protoco
   const std::string text = base::read_file(file, largest_plan);
   const auto root = base::parse_toml(text, file.string());
   PlanInForce out;
-  out.plan = read_keys(root, out.protocols, protocol);
+  out.plan = read_keys(root, file.string(), out.protocols, protocol);
   root.finish();
   out.source = file.filename().string();
   out.sha256 = base::sha256_hex(text);
@@ -220,7 +223,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
          base::shortest(rules.min_answered) + "                # share of a visit's trials\n" +
          format_pilot(plan.pilot) + format_levels(plan.levels) + format_method_claims(plan.claims) +
-         format_hypotheses(plan.hypotheses);
+         (plan.comparison ? format_comparison(*plan.comparison) : "") + format_hypotheses(plan.hypotheses);
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {
@@ -253,6 +256,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
   if (!plan.levels.empty()) json["levels"] = plan.levels;
   for (const auto& one : plan.claims) json["hypotheses"].push_back(claim_json(one));
   for (const auto& one : plan.hypotheses) json["hypotheses"].push_back(declared_json(one));
+  if (plan.comparison) json["model_comparison"] = comparison_json(*plan.comparison);
   if (!format_pilot(plan.pilot).empty())
     json["pilot"] = {{"reverse_coders", plan.pilot.exclude_reverse_coders ? "exclude" : "keep"},
                      {"drift", plan.pilot.model_drift ? "model" : "keep"},

@@ -23,7 +23,8 @@ struct PlanInForce {
 /// file (one with the key `protocols`) has older defaults: `decision` is "holm", only the hypotheses with
 /// once_one_sided are tested one-sided (key `directional`), `more_than_one_trial` is "refuse". base::Error at
 /// file:line:column for an unknown key, a wrong type or a value out of range. `protocol`: the tables
-/// [[hypothesis]] must name its factors, levels and questions; null: these names are not checked.
+/// [[hypothesis]] and [model_comparison] must name its factors, levels and questions; null: these names are
+/// not checked.
 PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protocol = nullptr);
 
 /// A timing rule says from which verdict on the timing of its showing on a trial is excluded.
@@ -32,8 +33,9 @@ PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protoco
 const char* timing_rule_name(stats::TimingRule rule);
 stats::TimingRule timing_rule_of(const std::string& name);
 
-/// Text of a plan file. read_plan() reads the same plan from it. The tables [pilot], [levels] and
-/// [[hypothesis]] are written only if they differ from the defaults, all other keys always.
+/// Text of a plan file. read_plan() reads the same plan from it. The tables [pilot], [levels],
+/// [model_comparison] and [[hypothesis]] are written only if they differ from the defaults, all other keys
+/// always.
 std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::string>& protocols);
 
 /// The entry "plan" of the results. `protocols`: SHA-256 of the study's protocols.

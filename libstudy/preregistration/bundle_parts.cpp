@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "libstudy/analysis/claims.hpp"
+#include "libstudy/analysis/plan_comparison.hpp"
 #include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/plan_hypotheses.hpp"
 #include "libstudy/protocol/method_claims.hpp"
@@ -160,7 +161,8 @@ std::string bundle_text(const std::vector<Protocol>& protocols, const stats::Ana
   out += "\nHypotheses\n";
   for (const Json& hypothesis : hypotheses) out += hypothesis_text(hypothesis);
   for (const auto& declared : plan.hypotheses) out += "- " + declared_text(declared) + "\n";
-  if (hypotheses.empty() && plan.hypotheses.empty()) out += "None.\n";
+  if (plan.comparison) out += "- " + comparison_text(*plan.comparison) + "\n";
+  if (hypotheses.empty() && plan.hypotheses.empty() && !plan.comparison) out += "None.\n";
   for (const std::string& one : untested) out += "- Not tested: " + one + ".\n";
   std::string curves;
   for (const auto& protocol : protocols) curves += curves_text(protocol, plan);

@@ -127,6 +127,14 @@ struct DeclaredHypothesis {
 /// The outcome of an adaptive procedure: each participant's threshold.
 inline constexpr const char* threshold_outcome = "threshold";
 
+/// A comparison of models of frame timing, as declared in a plan file.
+struct DeclaredComparison {
+  std::string question;             ///< id of the question whose answers the models predict
+  std::vector<std::string> models;  ///< two or more, by the names of vip-stats compare-models
+  int folds = 0;                    ///< groups of people that are left out in turn; 0: each person
+  std::string expected = {};        ///< the model that is expected to predict best; empty: none
+};
+
 struct AnalysisPlan {
   double alpha = 0.05;  ///< level of the tests of each claim, in (0, 0.5)
   DecisionRule decision = DecisionRule::IntersectionUnion;
@@ -146,6 +154,7 @@ struct AnalysisPlan {
   std::vector<DeclaredHypothesis> hypotheses = {};  ///< hypotheses of studies with factors
   std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of
                                                     ///< protocols/plans/paper.toml
+  std::optional<DeclaredComparison> comparison = {};
 };
 
 }  // namespace stats

@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/rivals/compare_models.hpp"
 #include "libstudy/analysis/rivals/proposals.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/rival_study.hpp"
@@ -170,6 +172,84 @@ TEST(CompareModelsE2e, PrintsWhatTheJsonHolds) {
   EXPECT_THAT(ended.out, HasSubstr(json.at("verdict").at("text").get<std::string>()));
   EXPECT_EQ(json.at("models").size(), 5u) << "three models, nothing and free";
   EXPECT_EQ(json.at("folds"), 5);
+}
+
+TEST(CompareModels, APlanIsReadBackAndChecked) {
+  const TemporaryFolder folder;
+  const auto plan_of = [&](const std::string& text, const study::Protocol* protocol = nullptr) {
+    base::write_file_atomically(folder / "plan.toml", text);
+    return study::read_plan(folder / "plan.toml", protocol);
+  };
+  const std::string head = "format = 1\n[model_comparison]\nquestion = \"satisfaction\"\n";
+  const auto plan = plan_of(head + "models = [\"p95\", \"longest+hitches\"]\n");
+  const std::string text = study::format_plan(plan.plan, {"ab"});
+  EXPECT_EQ(study::format_plan(plan_of(text).plan, {"ab"}), text);
+  ASSERT_TRUE(plan_of(text).plan.comparison);
+  EXPECT_EQ(plan_of(text).plan.comparison->models, (std::vector<std::string>{"p95", "longest+hitches"}));
+  EXPECT_THAT(study::format_plan({}, {}), ::testing::Not(HasSubstr("model_comparison")));
+  const auto pilot = study::read_protocol(base::resource("protocols/ptpe_pilot.toml"));
+  const auto task2 = study::read_protocol(base::resource("protocols/task2.toml"));
+  EXPECT_NO_THROW(plan_of(text, &pilot));
+  const auto refused = [&](const std::string& wrong, const char* words,
+                           const study::Protocol* protocol = nullptr) {
+    EXPECT_THAT([&] { plan_of(wrong, protocol); }, ::testing::ThrowsMessage<base::Error>(HasSubstr(words)))
+        << wrong;
+  };
+  refused(head + "models = [\"p95\", \"p96\"]\n", "models of [model_comparison]: 'p96' is no model");
+  refused(head + "models = [\"p95\"]\n", "fewer than two models");
+  refused(head + "models = [\"p95\", \"p99\"]\nexpected = \"longest\"\n", "is none of the models");
+  refused(head + "models = [\"p95\", \"p99\"]\nfolds = 1\n", "leaves nobody to fit");
+  refused(head + "models = [\"p95\", \"p99\"]\nmodel = \"x\"\n", "model");
+  refused(text, "which shows pairs", &task2);
+  refused("format = 1\n[model_comparison]\nquestion = \"joy\"\nmodels = [\"p95\", \"p99\"]\n",
+          "names no rating", &pilot);
+}
+
+TEST(CompareModelsE2e, WhatThePlanDeclaresIsConfirmatoryAlsoIfThereIsNothingToPredict) {
+  const TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  rival_study::write(at("same.db"), 1, [](int, const TimingPredictors&) { return 4; });
+  const auto same = compare(at("same.db"));
+  EXPECT_EQ(same.exit_code, 1) << same.out;
+  EXPECT_THAT(same.out,
+              HasSubstr("all 21 answers are 4, so there is no difference that a model could predict"));
+  EXPECT_THAT(same.out, ::testing::Not(HasSubstr("--models")));
+
+  rival_study::write(at("random.db"), 8, [](int person, const TimingPredictors& timing) {
+    const auto count = static_cast<std::uint64_t>(std::llround(1e6 * (timing[0] + timing[2] + timing[6])));
+    return 1 + static_cast<int>(7 * study::uniform_of(31 + static_cast<std::uint64_t>(person), count));
+  });
+  const auto sha256 = study::read_tasks(at("random.db")).protocols.at(0).sha256;
+  base::write_file_atomically(at("plan.toml"),
+                              "format = 1\nprotocols = [\"" + sha256 +
+                                  "\"]\n[model_comparison]\nquestion = \"satisfaction\"\nmodels = "
+                                  "[\"longest\", \"mean_rate\"]\nfolds = 2\nexpected = \"longest\"\n");
+  const auto compared = [&](const std::string& options) {
+    const auto ended =
+        compare(at("random.db") + " --plan " + at("plan.toml") + options + " --json " + at("out.json"));
+    EXPECT_EQ(ended.exit_code, 0) << ended.out;
+    auto json = base::parse_json(base::read_file(at("out.json"), 1 << 22));
+    json["out"] = ended.out;
+    return json;
+  };
+  const auto frozen = compared("");
+  EXPECT_EQ(frozen.at("exploratory"), false);
+  EXPECT_EQ(frozen.at("models").size(), 4u) << "two models, nothing and free";
+  EXPECT_EQ(frozen.at("folds"), 2);
+  EXPECT_EQ(frozen.at("verdict").at("confirmed"), false);
+  EXPECT_EQ(frozen.at("plan").at("preregistered"), true);
+  EXPECT_THAT(
+      frozen.at("out").get<std::string>(),
+      HasSubstr("confirmatory: plan.toml declares this comparison; it was preregistered for this protocol"));
+  const auto text = frozen.at("verdict").at("text").get<std::string>();
+  EXPECT_THAT(text, HasSubstr("The plan expects longest: not confirmed"));
+  EXPECT_THAT(
+      text, HasSubstr("No model predicts the answers clearly better than the average answer (nothing) does"));
+  const auto other = compared(" --models p95,longest --seed 2");
+  EXPECT_EQ(other.at("exploratory"), true);
+  EXPECT_FALSE(other.at("verdict").contains("confirmed"));
+  EXPECT_THAT(other.at("out").get<std::string>(),
+              HasSubstr("exploratory: plan.toml declares other models and rules of exclusion or seed"));
 }
 
 TEST(CompareModelsE2e, RefusesWithRemedies) {

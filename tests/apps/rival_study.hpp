@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/analysis/rivals/timing_predictors.hpp"
+#include "libstudy/analysis/timing_predictors.hpp"
 #include "libstudy/pacing/schedule.hpp"
 #include "libstudy/store/store.hpp"
 #include "tests/libstudy/study_fixture.hpp"

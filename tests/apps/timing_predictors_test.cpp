@@ -1,6 +1,6 @@
 /// The numbers of a trial's timing that people may notice, and the names of the models made of them.
 
-#include "libstudy/analysis/rivals/timing_predictors.hpp"
+#include "libstudy/analysis/timing_predictors.hpp"
 
 #include <gtest/gtest.h>
 

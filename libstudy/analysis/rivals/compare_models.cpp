@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "libstudy/analysis/rivals/proposals.hpp"
 #include "stats/base/file.hpp"
@@ -54,8 +55,11 @@ std::vector<double> by_setting(const RivalData& data, const std::vector<double>&
 class Document {
  public:
   Document(const RivalData& data, const std::vector<TimingModel>& models,
-           const stats::RivalComparisonOptions& options, const stats::RivalComparison& comparison)
+           const stats::RivalComparisonOptions& options, const stats::RivalComparison& comparison,
+           const PlanInForce& plan, const std::string& exploratory)
       : data_(data),
+        plan_(plan),
+        exploratory_(exploratory),
         models_(models),
         options_(options),
         comparison_(comparison),
@@ -68,7 +72,9 @@ class Document {
     Json json{{"schema", "vip-compare-models/1"},
               {"version", base::version()},
               {"date_utc", base::utc_now()},
-              {"exploratory", true},
+              {"exploratory", !exploratory_.empty()},
+              {"why_exploratory", exploratory_},
+              {"plan", plan_json(plan_, {data_.task.protocol.sha256})},
               {"protocol", {{"name", data_.task.protocol.name}, {"sha256", data_.task.protocol.sha256}}},
               {"question", data_.task.question.id},
               {"people", comparison_.people},
@@ -230,6 +236,25 @@ class Document {
     return contains(models_[static_cast<std::size_t>(m)], models_[static_cast<std::size_t>(inner)]);
   }
 
+  /// A sentence for answers that the model of nothing predicts as well as the rivals; else empty.
+  std::string nothing_words() const {
+    const auto& running = comparison_.in_the_running;
+    const auto nothing = static_cast<int>(models_.size());
+    if (std::find(running.begin(), running.end(), nothing) == running.end()) return "";
+    return ". No model predicts the answers clearly better than the average answer (nothing) does";
+  }
+
+  /// Whether the model that the plan expects is the winner; adds "expected" and "confirmed" to the verdict.
+  std::string expected_words(Json& verdict) const {
+    if (!exploratory_.empty() || plan_.plan.comparison->expected.empty()) return "";
+    const std::string& expected = plan_.plan.comparison->expected;
+    const bool confirmed =
+        comparison_.verdict == stats::RivalVerdict::Winner && name(best_rival()) == expected;
+    verdict["expected"] = expected;
+    verdict["confirmed"] = confirmed;
+    return ". The plan expects " + expected + ": " + (confirmed ? "confirmed" : "not confirmed");
+  }
+
   Json verdict_json() const {
     Json names = Json::array();
     for (const int m : comparison_.in_the_running) names.push_back(name(m));
@@ -255,6 +280,7 @@ class Document {
         break;
       }
     }
+    out["text"] = out["text"].get<std::string>() + nothing_words() + expected_words(out);
     return out;
   }
 
@@ -293,6 +319,8 @@ class Document {
   }
 
   const RivalData& data_;
+  const PlanInForce& plan_;
+  const std::string& exploratory_;
   const std::vector<TimingModel>& models_;
   const stats::RivalComparisonOptions& options_;
   const stats::RivalComparison& comparison_;
@@ -310,10 +338,27 @@ stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& dat
   return stats::compare_rivals(rivals, data.answers, reference_of(rivals), options);
 }
 
+std::string why_exploratory(const RivalData& data, const std::vector<TimingModel>& models,
+                            const stats::RivalComparisonOptions& options, bool plan_rules,
+                            const PlanInForce& plan) {
+  if (!plan.plan.comparison) return no_declared_comparison;
+  const stats::DeclaredComparison& declared = *plan.plan.comparison;
+  std::set<std::string> names;
+  for (const TimingModel& one : models) names.insert(one.name);
+  std::vector<std::string> other;
+  if (data.task.question.id != declared.question) other.emplace_back("question");
+  if (names != std::set<std::string>(declared.models.begin(), declared.models.end()))
+    other.emplace_back("models");
+  if (options.folds != declared.folds) other.emplace_back("groups of people");
+  if (!plan_rules) other.emplace_back("rules of exclusion or seed");
+  return other.empty() ? "" : plan.source + " declares other " + base::enumerated(other);
+}
+
 Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,
                          const stats::RivalComparisonOptions& options,
-                         const stats::RivalComparison& comparison) {
-  return Document(data, models, options, comparison).json();
+                         const stats::RivalComparison& comparison, const PlanInForce& plan,
+                         const std::string& exploratory) {
+  return Document(data, models, options, comparison, plan, exploratory).json();
 }
 
 }  // namespace study

@@ -1,10 +1,12 @@
 #pragma once
 /// Compares what people may notice of frame timing on the answers of a study, and writes the result as JSON.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/rivals/rival_data.hpp"
 #include "stats/ordinal/rival_comparison.hpp"
 
@@ -13,6 +15,7 @@ namespace study {
 /// Most timings for which a model with a free value for each is fitted beside the rivals.
 inline constexpr std::size_t most_free_settings = 60;
 inline constexpr const char* free_model = "free";  ///< name of this model
+inline constexpr const char* no_declared_comparison = "no analysis plan declares a comparison of models";
 
 /// Fits and compares the models. The last model of the comparison is free_model, if there are at most
 /// most_free_settings timings. why_no_comparison() must be empty for the data. Refused as
@@ -21,10 +24,18 @@ stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& dat
                                                             const std::vector<TimingModel>& models,
                                                             const stats::RivalComparisonOptions& options);
 
+/// Why the comparison is not the one that the plan declares, in words; empty if it is. plan_rules: exclusions
+/// and seed are those of the plan.
+std::string why_exploratory(const RivalData& data, const std::vector<TimingModel>& models,
+                            const stats::RivalComparisonOptions& options, bool plan_rules,
+                            const PlanInForce& plan);
+
 /// The document of `vip-stats compare-models --json` (docs/statistics.md): every number that the command
-/// prints.
+/// prints. exploratory: what why_exploratory() says; if empty, the comparison is confirmatory, and the
+/// verdict says whether the model that the plan expects predicts best.
 Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,
                          const stats::RivalComparisonOptions& options,
-                         const stats::RivalComparison& comparison);
+                         const stats::RivalComparison& comparison, const PlanInForce& plan = {},
+                         const std::string& exploratory = no_declared_comparison);
 
 }  // namespace study

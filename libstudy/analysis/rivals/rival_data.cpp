@@ -121,6 +121,13 @@ std::string why_no_comparison(const RivalData& data, std::string& mend) {
     mend = "compare models on trials of several timings";
     return "all answers are about one timing, " + setting_name(data.settings.front());
   }
+  const auto& scores = data.answers.score;
+  if (std::all_of(scores.begin(), scores.end(), [&](int score) { return score == scores.front(); })) {
+    mend = "compare models on answers that differ; vip-stats report describes these";
+    return "all " + std::to_string(scores.size()) + " answers are " +
+           std::to_string(scores_of(data.task.question)[static_cast<std::size_t>(scores.front())]) +
+           ", so there is no difference that a model could predict";
+  }
   if (data.answers.people < stats::least_people_to_compare) {
     mend = "collect more participants";
     return "models are compared over at least " + std::to_string(stats::least_people_to_compare) +

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/analysis/rivals/timing_predictors.hpp"
 #include "libstudy/analysis/task_data.hpp"
+#include "libstudy/analysis/timing_predictors.hpp"
 #include "libstudy/store/study_file.hpp"
 #include "stats/ordinal/rival_fit.hpp"
 
@@ -36,7 +36,8 @@ inline constexpr int most_scores = 21;
 RivalData collect_rival_data(const StudyFile& file, const TaskStudy& study, const ChosenTask& chosen,
                              const stats::ExclusionRules& rules);
 
-/// Why the models cannot be compared on these data: no answer, no frames, one setting, or too few people.
+/// Why the models cannot be compared on these data: no answer, no frames, one setting, equal
+/// answers, or too few people.
 /// Empty if they can. `mend` then receives the advice.
 std::string why_no_comparison(const RivalData& data, std::string& mend);
 

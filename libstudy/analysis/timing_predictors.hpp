@@ -52,6 +52,8 @@ std::vector<TimingModel> usual_timing_models();
 /// Reads "ptpe,p95,longest+hitches": names of predictors, "ptpe", or two predictors joined by '+'.
 /// base::Error for an unknown name, a name given twice and fewer than two models.
 std::vector<TimingModel> parse_timing_models(const std::string& text);
+/// The models with these names. place: where they stand, for messages. base::Error as parse_timing_models().
+std::vector<TimingModel> timing_models(const std::vector<std::string>& names, const std::string& place);
 /// True if `wide` has all predictors of `narrow` and more: with a coefficient of 0 it is `narrow`.
 bool contains(const TimingModel& wide, const TimingModel& narrow);
 

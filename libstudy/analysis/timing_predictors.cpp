@@ -1,4 +1,4 @@
-#include "libstudy/analysis/rivals/timing_predictors.hpp"
+#include "libstudy/analysis/timing_predictors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -111,18 +111,23 @@ std::vector<TimingModel> usual_timing_models() {
 }
 
 std::vector<TimingModel> parse_timing_models(const std::string& text) {
-  const std::string option = "--models " + text;
-  std::vector<TimingModel> out;
+  std::vector<std::string> list;
   std::istringstream names(text);
-  for (std::string name; std::getline(names, name, ',');) {
-    auto model = model_of(name, option);
+  for (std::string name; std::getline(names, name, ',');) list.push_back(name);
+  return timing_models(list, "--models " + text);
+}
+
+std::vector<TimingModel> timing_models(const std::vector<std::string>& names, const std::string& place) {
+  std::vector<TimingModel> out;
+  for (const std::string& name : names) {
+    auto model = model_of(name, place);
     for (const TimingModel& other : out)
       if (other.predictors == model.predictors)
-        throw base::Error(option, "names the model '" + name + "' twice", "name each model once");
+        throw base::Error(place, "names the model '" + name + "' twice", "name each model once");
     out.push_back(std::move(model));
   }
   if (out.size() < 2)
-    throw base::Error(option, "names fewer than two models", "name at least two of " + known_models());
+    throw base::Error(place, "names fewer than two models", "name at least two of " + known_models());
   return out;
 }
 
