@@ -342,6 +342,8 @@ TEST_F(Import, ReadsChoicesBetweenPairs) {
   refused(pair_columns + by_name, "P01,1," + scene + ",HiRes,Ours,Best\n",
           "\"Best\" names neither stimulus of the pair");
   refused(pair_columns + by_name, "P01,1," + scene + ",HiRes,HiRes,HiRes\n",
+          "names both stimuli of the pair");
+  refused(pair_columns, "P01,1," + scene + ",HiRes,HiRes,1\n",
           "in one trial, which the protocol does not pair");
   refused(pair_columns + by_name,
           rows + "P01,11" + rows.substr(rows.find(",1,") + 2, rows.find('\n') - rows.find(",1,") - 1),
