@@ -4,6 +4,9 @@
 namespace CLI {
 class App;
 }
+namespace study {
+struct MarkerPulse;
+}
 
 namespace apps {
 
@@ -24,8 +27,11 @@ void add_merge_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
+void add_markers_command(CLI::App& app);
 
 /// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);
+/// Adds --marker-pulse-ms.
+void add_marker_pulse(CLI::App& command, study::MarkerPulse& pulse);
 
 }  // namespace apps

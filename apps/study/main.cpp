@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   apps::add_trace_command(*app);
   apps::add_certify_command(*app);
   apps::add_bake_command(*app);
+  apps::add_markers_command(*app);
   apps::add_run_command(*app);
   apps::add_resume_command(*app);
   apps::add_status_command(*app);

@@ -15,6 +15,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/machine.hpp"
+#include "stats/base/streams.hpp"
 
 namespace apps {
 
@@ -111,8 +112,23 @@ std::vector<study::RunOptions> recorded_options(const std::vector<study::OpenRun
   return all;
 }
 
+/// Warns of a session that sent markers before and now does not.
+void warn_of_missing_markers(study::Store& store, const study::OpenRun& run, const PlayOptions& options) {
+  for (const study::OpenSession& session : run.sessions) {
+    for (const std::string& receiver : store.marker_receivers(session.id)) {
+      if (std::find(options.markers.begin(), options.markers.end(), receiver) != options.markers.end())
+        continue;
+      std::fprintf(stderr,
+                   "%s: warning: the session of %s sent markers to %s, and this command sends it none; "
+                   "--markers must be given again\n",
+                   options.database.c_str(), session.plan.participant.c_str(),
+                   base::for_terminal(receiver).c_str());
+    }
+  }
+}
+
 Played play_rest(const ResumeOptions& resume) {
-  const PlayOptions& options = resume.play;
+  PlayOptions options = resume.play;
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
                      tell_of_locks(options.database));
@@ -132,6 +148,8 @@ Played play_rest(const ResumeOptions& resume) {
     const study::Protocol protocol = rebuild_protocol(run, place);
     check_settings(resume.settings, chosen, place);
     study::check_keys_are_free(chosen.answer, options.console);
+    open_markers(options, chosen.clock == "virtual");
+    warn_of_missing_markers(store, run, options);
     study::SessionSetup setup =
         study::make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
     setup.warnings = warnings;

@@ -88,6 +88,15 @@ void open_mirror(const PlayOptions& options, const study::SessionSetup& setup) {
   setup.open_mirror(options.mirror_reveal);
 }
 
+void open_markers(PlayOptions& options, bool virtual_clock) {
+  if (options.markers.empty()) return;
+  if (virtual_clock)
+    throw base::Error("--markers", "a session on the virtual clock has no real time to mark",
+                      "leave --markers out, or run with --clock real");
+  if (!options.senders)
+    options.senders = std::make_shared<study::MarkerSenders>(options.markers, options.pulse);
+}
+
 namespace {
 
 void print_begins(const study::OpenSession& session, const study::OpenUnit& unit,
@@ -115,6 +124,7 @@ class Steering {
         protocol_(protocol),
         window_(setup.request),
         events_(options.events),
+        markers_(options.senders.get()),
         warnings_(std::move(warnings)) {
     if (options.console) {
       console_.emplace(protocol, store, options.database, setup.idle,
@@ -136,13 +146,17 @@ class Steering {
       if (console_) console_->warn(warning);
     }
     study::SessionHooks hooks;
+    if (markers_) hooks.mark = [this](const study::Marker& marker) { markers_->send(marker); };
     hooks.begins = [this, &session](const study::OpenUnit& unit) {
+      tell_of_markers();
       if (console_) console_->begins(unit);
       if (events_) print_begins(session, unit, protocol_);
     };
     if (console_) hooks.ends = [this](const study::Ending& ending) { console_->ends(ending); };
     if (console_) hooks.shown = [this](const study::FrameRecord& frame) { console_->shown(frame); };
-    hooks.done = [this](const study::UnitDone& unit) {
+    hooks.done = [this, &session](const study::UnitDone& unit) {
+      if (markers_) store_.add_markers(session.id, markers_->take());
+      tell_of_markers();
       if (progress_) progress_->update(++done_);
       if (console_) console_->done(unit);
       if (events_) print_done(unit, protocol_);
@@ -161,10 +175,28 @@ class Steering {
     return hooks;
   }
 
+  /// Call it when a session is over, however it ended: stores the rest of its markers.
+  void store_markers(const study::OpenSession& session) {
+    if (!markers_) return;
+    store_.add_markers(session.id, markers_->take_settled());
+    tell_of_markers();
+  }
+
   /// True if the console has reopened trials that must be shown again.
   bool take_reopened() { return console_ && console_->take_reopened(); }
 
  private:
+  void tell_of_markers() {
+    if (!markers_) return;
+    for (const std::string& news : markers_->take_news()) {
+      if (console_)
+        console_->warn(news);
+      else
+        std::fprintf(stderr, "%s%s\n", ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "",
+                     base::for_terminal(news).c_str());
+    }
+  }
+
   study::Request others() {
     if (StopSignals::stop_requested()) return study::Request::Stop;
     return console_ ? console_->request() : study::Request::GoOn;
@@ -174,6 +206,7 @@ class Steering {
   const study::Protocol& protocol_;
   const study::WindowRequest& window_;
   bool events_;
+  study::MarkerSenders* markers_;      ///< null: no markers are sent
   std::vector<std::string> warnings_;  ///< station warnings for the console
   std::size_t done_ = 0;
   std::optional<base::Progress> progress_;
@@ -260,7 +293,18 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   if (setup.rates.too_slow) warnings.emplace_back("live cells: not all reach their setting on this station");
   Steering steering(store, run, protocol, setup, options, warnings);
   const auto play = [&](const study::OpenSession& session) {
-    const auto ending = study::run_session(protocol, session, parts, steering.hooks(session));
+    const auto ending = [&] {
+      try {
+        return study::run_session(protocol, session, parts, steering.hooks(session));
+      } catch (...) {
+        try {
+          steering.store_markers(session);
+        } catch (const std::exception&) {  // the first error is told
+        }
+        throw;
+      }
+    }();
+    steering.store_markers(session);
     if (ending && !session.plan.observer) early.push_back({session.plan.participant, *ending});
   };
   for (const auto& session : run.sessions) {
@@ -296,6 +340,7 @@ RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Pro
   std::vector<EndedEarly> early;
   const auto tell = [&] {
     sim::print_guards("live fluid", setup.stimuli->guards(), {});
+    if (options.senders) std::fputs(options.senders->take_summary().c_str(), stdout);
     return tell_ends(run, early, options.database);
   };
   try {

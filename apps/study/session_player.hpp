@@ -3,10 +3,12 @@
 
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libstudy/markers/marker_sender.hpp"
 #include "libstudy/runner/session_setup.hpp"
 #include "libstudy/store/store.hpp"
 
@@ -40,8 +42,14 @@ struct PlayOptions {
   bool accept_slow = false;    ///< also play cells computed live that are too slow here
   bool events = false;  ///< print a line on stdout for each begun and each committed unit, without answers
   bool mirror = false;  ///< the experimenter sees the participant's pages in a second window
-  bool mirror_reveal = false;  ///< the second window also shows stimuli, which are otherwise black
+  bool mirror_reveal = false;        ///< the second window also shows stimuli, which are otherwise black
+  std::vector<std::string> markers;  ///< receivers of markers (study::open_marker_receiver())
+  study::MarkerPulse pulse;
+  std::shared_ptr<study::MarkerSenders> senders;  ///< the opened receivers; null: none
 };
+
+/// Opens options.markers unless they are open. base::Error if one cannot be reached, or on a virtual clock.
+void open_markers(PlayOptions& options, bool virtual_clock);
 
 /// Opens the experimenter's second window if options.mirror is set. base::Error if there is no participant's
 /// window or if the second window cannot be opened.

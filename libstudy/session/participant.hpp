@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/base/clock.hpp"
@@ -102,6 +103,18 @@ class Participant {
   /// Over is the participant's last page.
   virtual void tell(Notice, double /*least_s*/, Clock&, const Check&) {}
   virtual bool offer(Offer, Clock&, const Check&) { return true; }
+
+  /// Sets the function that ask() calls once its page is on the display. Participants without pages never
+  /// call it.
+  void tell_shown(std::function<void()> shown) { shown_ = std::move(shown); }
+
+ protected:
+  void page_is_shown() const {
+    if (shown_) shown_();
+  }
+
+ private:
+  std::function<void()> shown_;
 };
 
 }  // namespace study

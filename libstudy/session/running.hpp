@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "libstudy/session/marking.hpp"
 #include "libstudy/session/session.hpp"
 
 namespace study {
@@ -13,6 +14,7 @@ struct Running {
   const OpenSession& session;
   const SessionParts& parts;
   const SessionHooks& hooks;
+  Marking& marking;
 
   Request request() const { return hooks.request ? hooks.request() : Request::GoOn; }
   std::int64_t now_ns() const { return parts.clock.now_ns(); }

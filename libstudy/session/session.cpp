@@ -124,6 +124,7 @@ class SessionRun {
     for (under_way_ = 0; under_way_ < run_.session.units.size(); ++under_way_) {
       const OpenUnit& unit = run_.session.units[under_way_];
       wait_while_paused();
+      run_.marking.enter(unit.plan.position, 0);
       if (run_.hooks.begins) run_.hooks.begins(unit);
       if (auto ends = unit.trial ? trials_.play(unit) : page(unit)) return ends;
     }
@@ -201,9 +202,17 @@ void check_personal(const Running& run) {
 
 std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
                                   const SessionParts& parts, const SessionHooks& hooks) {
-  const Running running{protocol, session, parts, hooks};
+  // The clock of a headset's session is ahead of the computer's by the way of a picture to the display.
+  const RealClock real;
+  const Clock& marked_by = parts.virtual_clock ? parts.clock : static_cast<const Clock&>(real);
+  Marking marking(hooks.mark, marked_by, session.plan.plan.slot);
+  MarkedParticipant participant(parts.participant, marking);
+  SessionParts marked{parts.clock,    parts.display,       parts.stimuli, participant, parts.store,
+                      parts.personal, parts.virtual_clock, parts.gaze,    parts.slots, parts.targets};
+  const Running running{protocol, session, marked, hooks, marking};
   check_personal(running);
   record_headset(running);
+  const MarkedSession begun(marking);
   SessionRun run(running);
   const std::optional<Ending> ending = run.go();
   if (ending && hooks.ends) hooks.ends(*ending);

@@ -14,6 +14,7 @@
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/gaze_targets.hpp"
 #include "libstudy/display/stimulus.hpp"
+#include "libstudy/markers/marker.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/session/participant.hpp"
@@ -84,6 +85,8 @@ struct SessionHooks {
   /// which lasts until request() is GoOn. If the hook returns false, or if there is no hook, the
   /// participant's page has a button that ends the pause.
   std::function<bool(const Trouble&)> trouble;
+  /// Receives what happens, at once, for recording systems (libstudy/markers). It must not wait.
+  std::function<void(const Marker&)> mark;
 };
 
 /// Thrown if the session is stopped on request. The store then has all data up to the stop.

@@ -119,8 +119,9 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
   repeats_.begin_trial();
   for (;;) {
     showing.occasion = run_.occasion(unit);
+    run_.marking.enter(unit.plan.position, showing.attempt);
     try {
-      return play_steps(showing);
+      return play_marked(showing);
     } catch (const TrialAgain& cut) {
       again(showing, cut.reason());
       repeats_.after_cut(cut.cause);
@@ -146,6 +147,18 @@ void TrialPlayer::again(Showing& showing, const std::string& reason) {
   showing.verdicts.clear();
   showing.ready = nullptr;
   showing.next_interval = 0;
+}
+
+std::optional<Ending> TrialPlayer::play_marked(Showing& showing) {
+  run_.marking.mark(MarkerKind::TrialBegin);
+  try {
+    auto ends = play_steps(showing);
+    run_.marking.mark(MarkerKind::TrialEnd);
+    return ends;
+  } catch (...) {
+    run_.marking.mark(MarkerKind::Cut);
+    throw;
+  }
 }
 
 std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
@@ -211,6 +224,7 @@ void TrialPlayer::show(Showing& showing, int interval) {
   const std::int64_t presentation =
       run_.parts.store.begin_presentation(run_.session.id, showing.unit.trial_id, showing.attempt, interval,
                                           shown.cell, start_ns, Recording::followed(run_));
+  run_.marking.next_stimulus(interval + 1);
   showing.verdicts.push_back(present(presentation, start_ns, what,
                                      showing.intervals[static_cast<std::size_t>(interval)], *showing.ready,
                                      shown));
@@ -237,6 +251,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   FrameJournal journal(parts.store, {run_.session.id, presentation, start_ns}, recording.origin(),
                        !parts.virtual_clock);
   const auto each = [&](const FrameRecord& frame) {
+    if (frame.index == 0) run_.marking.onset(frame.times);
     journal.add(frame, recording.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);
     poll_requests(run_, true);

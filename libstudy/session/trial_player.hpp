@@ -32,6 +32,8 @@ class TrialPlayer {
     int next_interval = 0;
   };
 
+  /// play_steps() with markers for begin and end, or cut.
+  std::optional<Ending> play_marked(Showing& showing);
   std::optional<Ending> play_steps(Showing& showing);
   void choose(OpenUnit& unit);
   void again(Showing& showing, const std::string& reason);

@@ -18,6 +18,7 @@
 #include "libstudy/design/station.hpp"
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/headset.hpp"
+#include "libstudy/markers/marker.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/file/sqlite.hpp"
@@ -236,6 +237,10 @@ class Store {
   /// Commits a validation of the eye tracker and appends it to the session's earlier validations. base::Error
   /// as add_gaze().
   void add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed);
+  /// Commits markers of a session, and what became of them at their receivers.
+  void add_markers(std::int64_t session, std::span<const MarkerRecord> markers);
+  /// The receivers to which markers of this session were sent so far.
+  std::vector<std::string> marker_receivers(std::int64_t session);
   /// Commits a presentation's last frames and its timing verdict. If the trial had no schedule (nominal mean
   /// 0), the verdict is stored only if the trial was cut because it overran.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,

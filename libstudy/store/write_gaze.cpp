@@ -1,5 +1,5 @@
-/// Functions of Store that write participants' permissions, gaze if it is allowed, and the facts and
-/// recordings of a headset.
+/// Functions of Store that write participants' permissions, gaze if it is allowed, the facts and recordings
+/// of a headset, and markers.
 #include <array>
 #include <tuple>
 
@@ -157,6 +157,34 @@ void Store::add_validation(std::int64_t session, std::span<const ValidatedPoint>
         .bind_all(session, validation, static_cast<std::int64_t>(i), point.clock_ns, point.azimuth_deg,
                   point.elevation_deg, point.samples, point.valid, point.accuracy_deg, point.sd_deg,
                   point.rms_s2s_deg, passed ? 1 : 0)
+        .run();
+  }
+  commit(transaction);
+}
+
+std::vector<std::string> Store::marker_receivers(std::int64_t session) {
+  Statement row(*database_, "SELECT DISTINCT receiver FROM marker WHERE session_id = ? ORDER BY receiver");
+  std::vector<std::string> receivers;
+  for (row.bind_all(session); row.step();) receivers.push_back(row.text(0));
+  return receivers;
+}
+
+void Store::add_markers(std::int64_t session, std::span<const MarkerRecord> markers) {
+  if (markers.empty()) return;
+  const auto least = [](std::int64_t number, std::int64_t bound) {
+    return number < bound ? std::nullopt : std::optional(number);
+  };
+  Transaction transaction(*database_);
+  Statement insert(*database_, "INSERT INTO marker VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (const MarkerRecord& record : markers) {
+    const Marker& marker = record.marker;
+    const bool lost = !record.lost.empty();
+    insert
+        .bind_all(session, record.receiver, marker_name(marker.kind), marker_code(marker), marker.slot,
+                  least(marker.position, 0), least(marker.attempt, 1), least(marker.stimulus, 1),
+                  marker.clock_ns, least(marker.display_ns, 0), marker_utc(marker.utc_ns),
+                  lost ? std::nullopt : std::optional(record.written_ns - marker.clock_ns),
+                  lost ? std::optional(record.lost) : std::nullopt)
         .run();
   }
   commit(transaction);

@@ -82,7 +82,7 @@ bool Pages::handle_events(PageState& state, PageView& view) {
 }
 
 std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question> questions, double least_s,
-                                         const Check& check) {
+                                         const Check& check, const std::function<void()>& shown) {
   const While here(in_page_);
   surface_.show_cursor(true);
   text.corner = corner();
@@ -91,6 +91,7 @@ std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question
   PageState unseen(questions, least_s, now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen);
   surface_.show();
+  if (shown) shown();
   surface_.forget_input();
   PageState state(questions, least_s, now_ns());
   while (!state.confirmed()) {
@@ -254,7 +255,7 @@ void PageParticipant::read(const Block& block, double least_s, Clock&, const Che
 
 std::vector<TimedAnswer> PageParticipant::ask(const Block& block, std::span<const Question> questions,
                                               const Occasion&, Clock&, const Check& check) {
-  auto answers = pages_->run_page(page_of(block), questions, 0, check);
+  auto answers = pages_->run_page(page_of(block), questions, 0, check, [this] { page_is_shown(); });
   if (block.id == last_block_) begun_ = false;
   return answers;
 }

@@ -26,9 +26,9 @@ class Pages {
   Pages(PageSurface& surface, const std::string& language, const Clock& clock);
 
   /// Shows a page until it is confirmed. A request to stop opens the stop dialog. If the participant then
-  /// stops, request() returns the end of the session.
+  /// stops, request() returns the end of the session. shown: called once the page is on the surface.
   std::vector<TimedAnswer> run_page(PageText text, std::span<const Question> questions, double least_s,
-                                    const Check& check);
+                                    const Check& check, const std::function<void()>& shown = {});
   /// Shows a page with a choice of two answers; true if the first was chosen.
   bool choose_first(const DeskChoice& choice, const Check& check);
   /// Shows black until until_ns; with `words`, shows them and the time left instead.

@@ -37,6 +37,7 @@ constexpr const char* of_presentation =
 /// In the order of deletion: child tables before their parent tables.
 constexpr Dependant dependants[] = {
     {"permission_change", of_session, 3},
+    {"marker", of_session, 10},
     {"gaze_validation", of_session, 5},
     {"gaze", of_presentation, 3},
     {"head", of_presentation, 5},

@@ -1,0 +1,154 @@
+/// One line for each marker over TCP. The program connects; the recording program listens.
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "libstudy/markers/receiver.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr std::int64_t first_patience_ns = 3'000'000'000;  // to connect before the session
+
+struct TcpAddress {
+  sockaddr_storage bytes{};
+  socklen_t size = 0;
+};
+
+/// Splits [HOST:]PORT, with an IPv6 host in brackets, and looks the host up.
+std::vector<TcpAddress> look_up(const std::string& place, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  const bool digits =
+      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  if (!digits || std::stoi(port) < 1 || std::stoi(port) > 65535 || host.empty())
+    throw base::Error(place, "has no host and port", "write tcp:PORT, tcp:HOST:PORT or tcp:[IPV6]:PORT");
+  addrinfo wish{};
+  wish.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (const int code = ::getaddrinfo(host.c_str(), port.c_str(), &wish, &found); code != 0)
+    throw base::Error(place, "host " + host + " was not found: " + ::gai_strerror(code),
+                      "write its address, such as 192.168.1.20");
+  std::vector<TcpAddress> all;
+  for (const addrinfo* one = found; one; one = one->ai_next) {
+    TcpAddress address;
+    std::memcpy(&address.bytes, one->ai_addr, one->ai_addrlen);
+    address.size = one->ai_addrlen;
+    all.push_back(address);
+  }
+  ::freeaddrinfo(found);
+  return all;
+}
+
+class TcpReceiver final : public MarkerReceiver {
+ public:
+  TcpReceiver(const std::string& place, const std::string& rest) : addresses_(look_up(place, rest)) {
+    const std::string reason = connect(first_patience_ns);
+    if (!reason.empty())
+      throw base::Error(place, "nothing listens there: " + reason,
+                        "start the recording program first; nc -l 127.0.0.1 PORT shows the lines");
+  }
+
+  std::string write(const Marker& marker, std::int64_t) override {
+    if (!socket_.is_open()) {
+      if (!retry_.due()) return "the receiver is gone";
+      if (const std::string reason = connect(marker_patience_ns); !reason.empty())
+        return "the receiver is gone: " + reason;
+    }
+    if (const std::string reason = look_for_end(); !reason.empty()) return reason;
+    // The rest of an earlier line goes first, so that lines stay whole.
+    if (const std::string reason = send_rest(); !reason.empty()) return reason;
+    rest_ = marker_line(marker);
+    const std::size_t whole = rest_.size();
+    const std::string reason = send_rest();
+    if (!reason.empty() && rest_.size() == whole) rest_.clear();
+    return reason;
+  }
+
+ private:
+  std::string connect(std::int64_t patience_ns) {
+    std::string reason;
+    for (const TcpAddress& address : addresses_) {
+      socket_.reset(::socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+      reason = reach(address, patience_ns);
+      if (reason.empty()) break;
+      socket_.close();
+    }
+    if (!socket_.is_open()) return reason;
+    const int at_once = 1;
+    ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    rest_ = marker_header();
+    return send_rest();
+  }
+
+  std::string reach(const TcpAddress& address, std::int64_t patience_ns) const {
+    if (!socket_.is_open()) return std::strerror(errno);
+    if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address.bytes), address.size) == 0)
+      return "";
+    if (errno != EINPROGRESS) return std::strerror(errno);
+    if (!wait_until_writable(socket_.get(), patience_ns) && error() == 0) return "no answer";
+    const int code = error();
+    return code == 0 ? "" : std::strerror(code);
+  }
+
+  int error() const {
+    int code = 0;
+    socklen_t size = sizeof code;
+    return ::getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &code, &size) == 0 ? code : errno;
+  }
+
+  /// Reads away what the receiver sends. Returns a reason if it has closed the connection.
+  std::string look_for_end() {
+    std::array<char, 256> answer{};
+    for (;;) {
+      const ssize_t count = ::recv(socket_.get(), answer.data(), answer.size(), MSG_DONTWAIT);
+      if (count > 0) continue;
+      if (count < 0 && (errno == EAGAIN || errno == EINTR)) return "";
+      return lost_with(count == 0 ? "it closed the connection" : std::strerror(errno));
+    }
+  }
+
+  std::string send_rest() {
+    while (!rest_.empty()) {
+      const ssize_t count = ::send(socket_.get(), rest_.data(), rest_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (count > 0) {
+        rest_.erase(0, static_cast<std::size_t>(count));
+        continue;
+      }
+      if (errno != EAGAIN && errno != EINTR) return lost_with(std::strerror(errno));
+      if (!wait_until_writable(socket_.get(), marker_patience_ns)) return "the receiver does not read";
+    }
+    return "";
+  }
+
+  std::string lost_with(const std::string& reason) {
+    socket_.close();
+    rest_.clear();
+    return "the receiver is gone: " + reason;
+  }
+
+  std::vector<TcpAddress> addresses_;
+  MarkerFile socket_;
+  MarkerRetry retry_;
+  std::string rest_;  ///< bytes of a line that are not sent yet
+};
+
+}  // namespace
+
+std::unique_ptr<MarkerReceiver> open_tcp_receiver(const std::string& text, const std::string& rest) {
+  return std::make_unique<TcpReceiver>(text, rest);
+}
+
+}  // namespace study
