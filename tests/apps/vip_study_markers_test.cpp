@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <sstream>
 
 #include "tests/apps/study_test_support.hpp"
@@ -81,7 +82,7 @@ TEST(VipStudyMarkersE2e, AKilledSessionGoesOnAndSoDoItsMarkers) {
     listener.accept();
     for (auto line = run.read_line(); line && !line->starts_with("done P01 0"); line = run.read_line()) {
     }
-    listener.read_until("trial_begin,129");
+    listener.read_until("stimulus_onset,3,0,1");
     run.send(SIGKILL);
     run.wait();
   }
@@ -97,27 +98,25 @@ TEST(VipStudyMarkersE2e, AKilledSessionGoesOnAndSoDoItsMarkers) {
   EXPECT_THAT(after, HasSubstr("trial_begin,129,0,1,2,"));  // the second showing of the trial at position 1
   EXPECT_THAT(resumed.out,
               HasSubstr("markers to " + tcp + ": 7 written, 0 lost; from event to completed write"));
-  // Session begin, first trial, begin of the second; each byte between two zeros.
-  EXPECT_THAT(box.read(13), ::testing::StartsWith(std::string("\0\x40\0\x80\0\x03\0\x05\0\x06\0\x02\0", 13)));
-  EXPECT_EQ(
-      count_in(folder / "s.db", "SELECT count(*) FROM marker WHERE event = 'trial_end' AND lost IS NULL"),
-      3);  // the killed session stored its first trial's markers for both receivers
+  // Session begin, first trial; each byte between two zeros.
+  EXPECT_EQ(box.read(8).substr(0, 8), std::string("\0\x40\0\x80\0\x03\0\x05", 8));
+  // Onsets: of the first trial at both receivers, stored when it was done, and of the second after the kill.
   EXPECT_EQ(
       count_in(folder / "s.db",
                "SELECT count(*) FROM marker m JOIN presentation p ON m.clock_ns BETWEEN p.start_ns AND "
                "p.end_ns JOIN trial USING (trial_id) JOIN unit u ON u.trial_id = p.trial_id WHERE m.event = "
                "'stimulus_onset' AND u.position = m.position AND p.attempt = m.attempt"),
       3);
-  for (const std::string& code : {"P01", "random"}) EXPECT_THAT(before + after, Not(HasSubstr(code)));
+  for (const char* code : {"P01", "random"}) EXPECT_THAT(before + after, Not(HasSubstr(code)));
 }
 
 TEST(VipStudyMarkersE2e, AReceiverThatHangsUpEndsNoSession) {
   const TemporaryFolder folder;
-  ::test::Listener listener;
-  Process run(run_marked(folder.path(), {"--clock", "real", "--markers", "tcp:" + listener.port()}));
-  listener.accept();
-  listener.read_until("trial_begin");
-  listener.hang_up();
+  auto listener = std::make_unique<::test::Listener>();
+  Process run(run_marked(folder.path(), {"--clock", "real", "--markers", "tcp:" + listener->port()}));
+  listener->accept();
+  listener->read_until("trial_begin");
+  listener.reset();
   const Ended ended = run.wait();
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("are lost (the receiver is gone"));
