@@ -66,6 +66,10 @@ TEST(VipStudyCertifyE2e, EqualsAScriptOnPublicLogs) {
     expect_moments("presentmon2.csv", "FrameTime", program);
     expect_moments("presentmon2.csv", "DisplayedTime", program);
   }
+  for (const char* program : {"dwm.exe", "GRB.exe"}) {
+    expect_moments("presentmon_2019.csv", "MsBetweenPresents", program);
+    expect_moments("presentmon_2019.csv", "MsBetweenDisplayChange", program);
+  }
   for (const char* file : {"capframex.csv", "ocat.csv", "frameview.csv"}) {
     expect_moments(file, "MsBetweenPresents");
     expect_moments(file, "MsBetweenDisplayChange");
