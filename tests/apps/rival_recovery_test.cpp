@@ -53,7 +53,7 @@ std::vector<Shown> with_proposals() {
     out.push_back(shown(study::setting_of(
         {.kind = study::ProfileKind::Hitches, .mean_fps = fps, .hitch_ms = hitch_ms, .period_s = period_s},
         10)));
-  for (const auto& [slow, fast] : {std::array{8.0, 50.0}, {10.0, 30.0}, {20.0, 60.0}}) {
+  for (const auto& [slow, fast] : {std::array{8.0, 50.0}, {10.0, 30.0}, {5.0, 80.0}}) {
     study::TimingProfile profile{.kind = study::ProfileKind::Trace};
     for (const double fps : {slow, fast})
       profile.frame_ms.insert(profile.frame_ms.end(), static_cast<std::size_t>(fps / 2), 1000 / fps);
