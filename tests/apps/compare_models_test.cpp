@@ -117,7 +117,7 @@ TEST(CompareModels, SaysThatItCannotTellANestedModelApart) {
               0.02);
 }
 
-TEST(CompareModels, AnimationErrorIsAModelWhereItIsRecorded) {
+TEST(CompareModelsSlow, AnimationErrorIsAModelWhereItIsRecorded) {
   const TemporaryFolder folder;
   const auto path = folder / "errors.db";
   rival_study::write(path, 8, judging_by(TimingPredictor::AnimationError, 2, -2), true,
