@@ -133,7 +133,8 @@ void add_certify_command(CLI::App& app) {
   auto options = std::make_shared<CertifyOptions>();
   CLI::App& sub = *app.add_subcommand(
       "certify", "Print the timing certificate of frame logs of other programs, such as PresentMon");
-  sub.add_option("files", options->files, "CSV files or JSON files, in a format of docs/session.md")->required();
+  sub.add_option("files", options->files, "CSV files or JSON files, in a format of docs/session.md")
+      ->required();
   sub.add_option(
       "--column", options->column,
       "Column of frame times in ms (default: intervals between frames, and between changes of the picture)");
