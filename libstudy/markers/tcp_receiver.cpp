@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::int64_t first_patience_ns = 3'000'000'000;  // to connect before the session
 
+constexpr int send_bytes = 65536;
+
 struct TcpAddress {
   sockaddr_storage bytes{};
   socklen_t size = 0;
@@ -89,6 +91,8 @@ class TcpReceiver final : public MarkerReceiver {
     if (!socket_.is_open()) return reason;
     const int at_once = 1;
     ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    // A large buffer would hide for hours that the receiver does not read.
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_SNDBUF, &send_bytes, sizeof send_bytes);
     rest_ = marker_header();
     return send_rest();
   }

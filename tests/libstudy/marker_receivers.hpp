@@ -52,10 +52,10 @@ class SerialLine {
   /// Fills the line, as if the box had stopped reading long ago.
   void fill() {
     const int port = ::open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY);
-    const std::string bytes(4096, 'x');
-    while (::write(port, bytes.data(), bytes.size()) > 0) {
-    }
-    while (::write(port, "x", 1) > 0) {
+    // The kernel moves bytes on for a while, which makes room again.
+    for (int full = 0; full < 10;) {
+      full = ::write(port, "xxxxxxxx", full > 0 ? 1 : 8) > 0 ? 0 : full + 1;
+      if (full > 0) ::usleep(2000);
     }
     ::close(port);
   }

@@ -173,9 +173,17 @@ TEST(Markers, AReceiverThatStopsReadingGetsWholeLinesOnly) {
   test::Listener listener;
   const auto receiver = open_marker_receiver("tcp:127.0.0.1:" + listener.port(), {});
   listener.accept();
-  int written = 0;
-  while (receiver->write(now(MarkerKind::Cut), 0).empty() && written < 1'000'000) ++written;
-  EXPECT_EQ(receiver->write(now(MarkerKind::Cut), 0), "the receiver does not read");
+  int written = 0, lost = 0;
+  while (lost < 3 && written < 10'000) {
+    const std::string reason = receiver->write(now(MarkerKind::Cut), 0);
+    if (reason.empty()) {
+      ++written;
+      continue;
+    }
+    EXPECT_EQ(reason, "the receiver does not read");
+    ++lost;
+  }
+  EXPECT_EQ(lost, 3) << "a receiver that does not read is noticed soon";
   std::future<std::string> all = std::async([&] { return listener.read_until("session_end"); });
   while (!receiver->write(now(MarkerKind::SessionEnd, -1), 0).empty()) {
   }
@@ -183,10 +191,11 @@ TEST(Markers, AReceiverThatStopsReadingGetsWholeLinesOnly) {
   std::string line;
   std::getline(lines, line);
   int came = 0;
-  for (; std::getline(lines, line) && line.starts_with("cut,9,70,3,,,"); ++came) {
-  }
+  for (; std::getline(lines, line) && line.starts_with("cut,9,70,3,,,"); ++came)
+    ASSERT_EQ(std::count(line.begin(), line.end(), ','), 8) << line;
   EXPECT_TRUE(line.starts_with("session_end,1,70,,,,")) << line;
-  EXPECT_THAT(came, ::testing::AllOf(::testing::Ge(written), ::testing::Le(written + 1)));
+  // The rest of a line that was counted as lost goes out later.
+  EXPECT_THAT(came, ::testing::AllOf(::testing::Ge(written), ::testing::Le(written + lost)));
 }
 
 TEST(Markers, TheSessionNeverWaitsAndLostMarkersAreCounted) {
