@@ -33,7 +33,7 @@ std::unique_ptr<MarkerReceiver> open_marker_receiver(const std::string& text, co
   const bool known = kind == "serial" || kind == "tcp" || kind == "lsl";
   if (!known || rest.empty())
     throw base::Error(
-        place, known ? "names no receiver" : "is no kind of receiver that vip-study knows",
+        place, known ? "names no receiver" : "is no kind of receiver",
         "write serial:/dev/ttyUSB0, serial:/dev/ttyUSB0:9600, tcp:PORT, tcp:HOST:PORT or lsl:NAME");
   if (kind == "serial") return open_serial_receiver(place, rest, pulse);
   return kind == "tcp" ? open_tcp_receiver(place, rest) : open_lsl_receiver(place, rest);

@@ -251,6 +251,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(5),
       upgrade_from(6),
       upgrade_from(8),
+      upgrade_from(9),
   };
   return flows;
 }
