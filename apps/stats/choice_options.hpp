@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/task_choice.hpp"
 
 namespace apps {
@@ -35,5 +36,8 @@ CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options);
 CLI::Option* add_level_choice(CLI::App& command, ChoiceOptions& options);
 /// Adds --protocol, --question and --level.
 void add_choice(CLI::App& command, ChoiceOptions& options);
+
+/// Facts about the preregistration in the folder. base::Error if the folder is no bundle.
+study::FrozenFacts frozen_facts(const std::string& folder);
 
 }  // namespace apps

@@ -22,7 +22,7 @@ namespace apps {
 namespace {
 
 struct CompareCommand {
-  std::string database, json, plan, models;
+  std::string database, json, plan, bundle, models;
   std::optional<std::string> exclude;
   std::optional<std::uint64_t> seed;
   int folds = 0;
@@ -44,10 +44,8 @@ void print_head(const study::Json& json) {
   if (!exploratory.empty())
     std::printf("exploratory: %s\n", exploratory.c_str());
   else
-    std::printf("confirmatory: %s declares this comparison; %s\n", words(json.at("plan"), "source").c_str(),
-                json.at("plan").at("preregistered").get<bool>()
-                    ? "it was preregistered for this protocol"
-                    : "it names no such protocol, so nothing shows that it is older than the data");
+    std::printf("confirmatory: %s declares this comparison and was frozen before the first answer\n",
+                words(json.at("plan"), "source").c_str());
   if (json.at("test_data").get<bool>()) std::printf("note: these are test data, not a study\n");
   if (const int n = json.at("simulated_participants").get<int>(); n > 0)
     std::printf("note: %d participants are simulated\n", n);
@@ -135,13 +133,17 @@ void print_proposals(const study::Json& json) {
 void compare_models(const CompareCommand& command) {
   check_apart(command.database, {{"--json", command.json}, {"--plan", command.plan}});
   study::PlanInForce in_force;
-  if (!command.plan.empty()) in_force = study::read_plan(command.plan);
+  const std::string plan_file =
+      command.bundle.empty() ? command.plan : (std::filesystem::path(command.bundle) / "plan.toml").string();
+  std::optional<study::FrozenFacts> frozen;
+  if (!command.bundle.empty()) frozen = frozen_facts(command.bundle);
+  if (!plan_file.empty()) in_force = study::read_plan(plan_file);
   stats::AnalysisPlan& plan = in_force.plan;
   const bool plan_rules = !command.exclude && !command.seed;
   if (command.exclude) plan.exclusions.timing = study::timing_rule_of(*command.exclude);
   const auto& declared = plan.comparison;
   const auto models = !command.models.empty() ? study::parse_timing_models(command.models)
-                      : declared              ? study::timing_models(declared->models, command.plan)
+                      : declared              ? study::timing_models(declared->models, plan_file)
                                               : study::usual_timing_models();
   ChoiceOptions choice = command.choice;
   if (declared && choice.question.empty()) choice.question = declared->question;
@@ -157,18 +159,19 @@ void compare_models(const CompareCommand& command) {
   if (const auto reason = study::why_not_recorded(data, models, mend); !reason.empty())
     throw base::Error(command.database, "no comparison: " + reason, mend);
   if (folds > data.answers.people)
-    throw base::Error(
-        (command.folds_given ? "--folds " : command.plan + ", folds = ") + std::to_string(folds),
-        "there are only " + std::to_string(data.answers.people) + " people",
-        command.folds_given ? "give at most as many groups, or leave it out"
-                            : "give --folds with at most as many groups; the result is then exploratory");
+    throw base::Error((command.folds_given ? "--folds " : plan_file + ", folds = ") + std::to_string(folds),
+                      "there are only " + std::to_string(data.answers.people) + " people",
+                      command.folds_given
+                          ? "give at most as many groups, or leave it out"
+                          : "give --folds with at most as many groups; the result is then exploratory");
   const stats::RivalComparisonOptions options{folds, command.seed.value_or(plan.seed), {}};
   const auto comparison = study::compare_timing_models(data, models, options);
   if (!comparison)
     throw base::Error(command.database, "no comparison: " + comparison.reason(),
                       "choose other --models, or collect more answers");
-  auto json = study::compare_models_json(data, models, options, *comparison, in_force,
-                                         study::why_exploratory(data, models, options, plan_rules, in_force));
+  const auto exploratory = study::why_exploratory(data, models, options, plan_rules, in_force, frozen);
+  auto json = study::compare_models_json(data, models, options, *comparison, in_force, exploratory);
+  if (frozen) json["preregistration"] = study::preregistration_json(*frozen, data.task);
   if (!study.lacking.empty()) json["incomplete"] = study.lacking;
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
   print_head(json);
@@ -199,10 +202,14 @@ void add_compare_models_command(CLI::App& app) {
   sub->add_option("--seed", command->seed, "Seed of the groups, instead of the plan's (default: 1)");
   sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
       ->check(output_file());
-  sub->add_option(
+  auto* plan = sub->add_option(
       "--plan", command->plan,
       "Analysis plan (TOML) with the rules of exclusion and, as [model_comparison], the question and "
       "the models; without: the defaults");
+  sub->add_option("--preregistered", command->bundle,
+                  "Folder of vip-stats preregister: its plan is used, and the comparison that it declares is "
+                  "confirmatory if it is intact, holds the protocol and is older than the first answer")
+      ->excludes(plan);
   sub->add_option("--exclude", command->exclude,
                   "Trials left out by timing verdict, instead of what the plan says (default: fail)")
       ->check(CLI::IsMember({"none", "fail", "degraded"}));

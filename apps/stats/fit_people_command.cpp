@@ -67,6 +67,9 @@ void print_population(const study::PeopleContours& contours) {
   std::printf("mu = a exp(b delta) with %.0f %% intervals\n", 100 * contours.confidence);
   std::printf("  population: a = %.2f %s frames/s, b = %.4f %s s/frame\n", population.curve.a(),
               rate_ends(population.a_ci).c_str(), population.curve.b, ends(population.b_ci, 4).c_str());
+  if (contours.out_of_reach())
+    std::printf(
+        "  note: this curve lies outside the frame rates shown at most deltas: another --level is needed\n");
   std::printf("  SD between people: log a %.3f %s, b %.4f %s; correlation %.2f %s\n", fit.sd_log_a.value,
               ends(fit.sd_log_a.ci, 3).c_str(), fit.sd_b.value, ends(fit.sd_b.ci, 4).c_str(),
               fit.correlation.value, ends(fit.correlation.ci, 2).c_str());
@@ -97,7 +100,9 @@ void print_people(const study::PeopleContours& contours) {
       "alone: by the person's answers without those of others. own: share of the person's own answers in "
       "the\n"
       "curve, 0 (all from others) to 1.\n");
-  if (doubts > 0) std::printf("* no contour of the person's own; take the population's:\n");
+  if (doubts > 0)
+    std::printf("* no contour of the person's own%s:\n",
+                contours.out_of_reach() ? "" : "; take the population's");
   for (const auto& one : contours.fit.people)
     if (const auto doubt = contours.doubt(one); !doubt.empty())
       std::printf("  %s: %s\n", contours.code(one).c_str(), doubt.c_str());
@@ -116,13 +121,18 @@ const stats::PersonContour& chosen_person(const PeopleCommand& command,
   if (const auto doubt = contours.doubt(*found); !doubt.empty())
     throw base::Error("--person " + base::shortened(command.person),
                       "has no contour of the person's own: " + doubt,
-                      "give the solver the population's curve, by vip-stats fit-ptpe with --out; nothing was "
-                      "written");
+                      contours.out_of_reach()
+                          ? "choose another --level: the population's curve lies outside the frame rates "
+                            "shown too; nothing was written"
+                          : "give the solver the population's curve, by vip-stats fit-ptpe with --out; "
+                            "nothing was written");
   return *found;
 }
 
 void fit_people(const PeopleCommand& command) {
   check_apart(command.database, {{"--json", command.json}, {"--out", command.out}, {"--plan", command.plan}});
+  if (!command.out.empty() && command.person.empty())
+    throw base::Error("--person", "is empty", "give the code of a participant");
   stats::AnalysisPlan plan;
   if (!command.plan.empty()) plan = study::read_plan(command.plan).plan;
   if (command.exclude) plan.exclusions.timing = study::timing_rule_of(*command.exclude);

@@ -12,7 +12,6 @@
 #include "apps/stats/commands.hpp"
 #include "libstudy/analysis/tasks/csv.hpp"
 #include "libstudy/analysis/tasks/study_results.hpp"
-#include "libstudy/preregistration/preregistration.hpp"
 #include "libstudy/report/page.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
@@ -40,13 +39,6 @@ study::Json read_since(const std::string& path) {
     throw base::Error(path, std::string("is no JSON: ") + error.what(),
                       "give a file that vip-stats study --json wrote");
   }
-}
-
-study::FrozenFacts frozen_facts(const std::string& folder) {
-  const auto bundle = study::report::read_bundle(folder);
-  study::FrozenFacts out{bundle.sha256, bundle.about.at("frozen_utc").get<std::string>(), bundle.altered, {}};
-  for (const auto& [sha256, text] : bundle.protocols) out.protocols.push_back(sha256);
-  return out;
 }
 
 study::Json results_of_study(const StudyCommand& command) {

@@ -33,7 +33,12 @@ struct BakeCommand {
 };
 
 stats::PtpeModel ptpe_model(const BakeCommand& command) {
-  return command.ptpe.empty() ? stats::PtpeModel{} : sim::read_ptpe_file(command.ptpe).model;
+  if (command.ptpe.empty()) return {};
+  const auto file = sim::read_ptpe_file(command.ptpe);
+  if (!file.participant.empty())
+    throw base::Error(command.ptpe, "holds the curve of one person, which a bake would keep",
+                      "give the curve of all people, which vip-stats fit-ptpe writes");
+  return file.model;
 }
 
 study::BakeOrder order_of(const BakeCommand& command) {

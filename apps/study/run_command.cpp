@@ -21,6 +21,7 @@
 #include "stats/base/machine.hpp"
 #include "stats/base/picture_size.hpp"
 #include "stats/base/streams.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -78,9 +79,20 @@ study::Protocol read_checked_protocol(const RunCommand& command) {
   return protocol;
 }
 
-std::optional<std::string> read_ptpe(const std::string& path) {
+/// Reads the PTPE file of --ptpe. A session stores it, so that the curve of one person is refused for anybody
+/// else: it would stay in their sessions after the person's withdrawal.
+std::optional<std::string> read_ptpe(const std::string& path, const std::vector<std::string>& codes) {
   if (path.empty()) return {};
-  std::printf("%s: %s\n", path.c_str(), sim::describe(sim::read_ptpe_file(path)).c_str());
+  const auto file = sim::read_ptpe_file(path);
+  const auto other = std::find_if(codes.begin(), codes.end(),
+                                  [&](const std::string& code) { return code != file.participant; });
+  if (!file.participant.empty() && other != codes.end())
+    throw base::Error(path,
+                      "holds the curve of " + base::shortened(file.participant) + ", and would stay in " +
+                          base::shortened(*other) + "'s session after a withdrawal",
+                      "run it with --participant " + base::shortened(file.participant) +
+                          " alone, or give the curve of all people, which vip-stats fit-ptpe writes");
+  std::printf("%s: %s\n", path.c_str(), sim::describe(file).c_str());
   return base::read_file(path, 1 << 20);
 }
 
@@ -193,7 +205,7 @@ void run(RunCommand& command) {
   if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
   const auto codes = participant_codes(command, protocol);
   for (const std::string& code : codes) study::check_participant_code(code);
-  const auto ptpe = read_ptpe(command.ptpe);
+  const auto ptpe = read_ptpe(command.ptpe, codes);
   command.run.settings = read_settings(command.settings, protocol);
   study::check_keys_are_free(command.run.answer, command.play.console);
   study::SessionSetup setup = study::make_session_setup(command.run, protocol, ptpe, command.ptpe);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "stats/base/file.hpp"
+#include "stats/base/streams.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
@@ -93,7 +94,9 @@ std::string describe(const PtpeFile& file) {
   if (!file.band.empty())
     out += fmt::format("mu uncertain by up to +-{:.0f} % at delta {:g} to {:g}, ", 100 * widest(file),
                        file.band.front().delta, file.band.back().delta);
-  out += fmt::format("{} participant{}", file.n_participants, file.n_participants == 1 ? "" : "s");
+  out += file.participant.empty()
+             ? fmt::format("{} participant{}", file.n_participants, file.n_participants == 1 ? "" : "s")
+             : "the curve of one person, " + base::for_terminal(file.participant);
   if (file.n_simulated > 0) out += fmt::format(", {} of them SIMULATED", file.n_simulated);
   return out + (file.test_data ? ", TEST DATA)" : ")");
 }
@@ -125,6 +128,7 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
                "count each participant once");
   }
   file.test_data = table.boolean_or("test_data", false);
+  file.participant = table.string_or("participant", "");
   if (table.choice("fps_mean", {"harmonic", "arithmetic"}) == "arithmetic")
     file.model.mean = stats::FpsMean::Arithmetic;
   file.protocol_sha256 = table.string("protocol_sha256");
@@ -169,6 +173,7 @@ std::string format_ptpe_file(const PtpeFile& file) {
         << list([](Point p) { return p.in_reach ? Listed() : Listed(p.delta); });
   out << "\nn_participants = " << file.n_participants << "\nn_simulated = " << file.n_simulated
       << "\ntest_data = " << (file.test_data ? "true" : "false")
+      << (file.participant.empty() ? "" : "\nparticipant = " + base::toml_quoted(file.participant))
       << "\nfps_mean = " << base::toml_quoted(mean_name(file.model.mean))
       << "\nprotocol_sha256 = " << base::toml_quoted(file.protocol_sha256)
       << "\ndate_utc = " << base::toml_quoted(file.date_utc) << "\n";

@@ -32,6 +32,7 @@ struct PtpeFile {
   int n_participants = 0;
   int n_simulated = 0;          ///< simulated observers among the participants; the key may be missing
   bool test_data = false;       ///< true if fitted to test data; the key may be missing
+  std::string participant;      ///< code of the person whose own curve this is; empty: a fit of all people
   std::string protocol_sha256;  ///< 64 hexadecimal digits
   std::string date_utc;         ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
 };

@@ -264,4 +264,24 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
   return json;
 }
 
+Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
+  Json problems = Json::array();
+  if (!frozen.altered.empty())
+    problems.push_back("files of the bundle were altered: " + base::joined(frozen.altered));
+  if (std::count(frozen.protocols.begin(), frozen.protocols.end(), data.protocol.sha256) == 0)
+    problems.push_back("the bundle holds another protocol");
+  if (!data.imported.empty())
+    problems.push_back("answers were imported, and only their source says when they were given");
+  if (!data.doubtful_times.empty())
+    problems.push_back("the clock of a session is in doubt");
+  else if (!data.first_answer_utc.empty() && frozen.frozen_utc >= data.first_answer_utc)
+    problems.push_back("the bundle, frozen " + frozen.frozen_utc +
+                       ", is not older than the first answer, given " + data.first_answer_utc);
+  const bool holds = problems.empty();
+  return {{"sha256", frozen.sha256},
+          {"frozen_utc", frozen.frozen_utc},
+          {"preregistered", holds},
+          {"problems", problems}};
+}
+
 }  // namespace study

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/task_data.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/analysis/plan.hpp"
 
@@ -40,5 +41,17 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
 
 /// The entry "plan" of the results. `protocols`: SHA-256 of the study's protocols.
 Json plan_json(const PlanInForce& plan, const std::vector<std::string>& protocols);
+
+/// Facts about a preregistration (bundle) that the results of a study need.
+struct FrozenFacts {
+  std::string sha256, frozen_utc;      ///< the bundle's hash and date
+  std::vector<std::string> altered;    ///< files that differ from the bundle's manifest
+  std::vector<std::string> protocols;  ///< SHA-256 of the protocols in the bundle
+};
+
+/// The entry "preregistration" of results. Its member "preregistered" is true if the bundle is intact, holds
+/// the protocol and was frozen before the first answer, and if no session's clock is in doubt. "problems"
+/// lists the reasons against it.
+Json preregistration_json(const FrozenFacts& frozen, const TaskData& data);
 
 }  // namespace study

@@ -34,6 +34,9 @@ inline constexpr int least_people_to_pool = 5;
 inline constexpr int least_settings_to_pool = 6;
 /// A person's contour with a smaller own_share is called the population's.
 inline constexpr double least_own_share = 0.5;
+/// PersonContour::log_mu_sd beyond which a person has no contour of the person's own: the ends of the 95 %
+/// interval of mu then differ by more than a factor of two.
+inline constexpr double largest_log_mu_sd = 0.18;
 
 struct PeopleOptions {
   bool straight = false;  ///< hold m = q = 0
@@ -80,6 +83,8 @@ struct PersonContour {
   /// the person's own answers say nothing, 1 if they say all.
   double own_share = 0;
   std::vector<double> in_reach;  ///< nominal deltas at which the curve lies among the frame rates shown
+  std::size_t deltas = 0;        ///< number of nominal deltas shown
+  double log_mu_sd = 0;          ///< root mean square of the SD of log mu(delta), over the ratings' deltas
 
   /// Why the answers do not determine a contour of the person's own, as a phrase; empty: they do.
   std::string doubt() const;
@@ -98,6 +103,7 @@ struct PeopleFit {
   double log_likelihood = 0;  ///< without the priors
   int n = 0, settings = 0;
   std::vector<double> deltas;         ///< nominal, ascending
+  std::vector<double> in_reach;       ///< deltas at which the population's curve lies among the rates shown
   std::vector<PersonContour> people;  ///< by ascending participant
 };
 

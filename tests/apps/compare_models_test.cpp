@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/rivals/compare_models.hpp"
 #include "libstudy/analysis/rivals/proposals.hpp"
 #include "libstudy/observer/observer.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -215,37 +218,55 @@ TEST(CompareModelsE2e, WhatThePlanDeclaresIsConfirmatoryAlsoIfThereIsNothingToPr
               HasSubstr("all 21 answers are 4, so there is no difference that a model could predict"));
   EXPECT_THAT(same.out, ::testing::Not(HasSubstr("--models")));
 
+  base::write_file_atomically(at("pilot.toml"), rival_study::protocol_text());
+  base::write_file_atomically(at("plan.toml"),
+                              "format = 1\n[model_comparison]\nquestion = \"satisfaction\"\nmodels = "
+                              "[\"longest\", \"mean_rate\"]\nfolds = 2\nexpected = \"longest\"\n");
+  const auto freeze = [&](const char* bundle) {
+    study::report::BundleRequest request;
+    request.protocols = {at("pilot.toml")};
+    request.plan = study::read_plan(at("plan.toml")).plan;
+    study::report::freeze_bundle(request, at(bundle));
+  };
+  freeze("before");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times of answers are whole seconds
   rival_study::write(at("random.db"), 8, [](int person, const TimingPredictors& timing) {
     const auto count = static_cast<std::uint64_t>(std::llround(1e6 * (timing[0] + timing[2] + timing[6])));
     return 1 + static_cast<int>(7 * study::uniform_of(31 + static_cast<std::uint64_t>(person), count));
   });
-  const auto sha256 = study::read_tasks(at("random.db")).protocols.at(0).sha256;
-  base::write_file_atomically(at("plan.toml"),
-                              "format = 1\nprotocols = [\"" + sha256 +
-                                  "\"]\n[model_comparison]\nquestion = \"satisfaction\"\nmodels = "
-                                  "[\"longest\", \"mean_rate\"]\nfolds = 2\nexpected = \"longest\"\n");
   const auto compared = [&](const std::string& options) {
-    const auto ended =
-        compare(at("random.db") + " --plan " + at("plan.toml") + options + " --json " + at("out.json"));
+    const auto ended = compare(at("random.db") + options + " --json " + at("out.json"));
     EXPECT_EQ(ended.exit_code, 0) << ended.out;
     auto json = base::parse_json(base::read_file(at("out.json"), 1 << 22));
     json["out"] = ended.out;
     return json;
   };
-  const auto frozen = compared("");
+  const auto frozen = compared(" --preregistered " + at("before"));
   EXPECT_EQ(frozen.at("exploratory"), false);
   EXPECT_EQ(frozen.at("models").size(), 4u) << "two models, nothing and free";
   EXPECT_EQ(frozen.at("folds"), 2);
   EXPECT_EQ(frozen.at("verdict").at("confirmed"), false);
-  EXPECT_EQ(frozen.at("plan").at("preregistered"), true);
+  EXPECT_EQ(frozen.at("preregistration").at("preregistered"), true);
   EXPECT_THAT(
       frozen.at("out").get<std::string>(),
-      HasSubstr("confirmatory: plan.toml declares this comparison; it was preregistered for this protocol"));
+      HasSubstr("confirmatory: plan.toml declares this comparison and was frozen before the first answer"));
   const auto text = frozen.at("verdict").at("text").get<std::string>();
   EXPECT_THAT(text, HasSubstr("The plan expects longest: not confirmed"));
   EXPECT_THAT(
       text, HasSubstr("No model predicts the answers clearly better than the average answer (nothing) does"));
-  const auto other = compared(" --models p95,longest --seed 2");
+  const auto expect_exploratory = [&](const std::string& options, const std::string& reason) {
+    const auto json = compared(options);
+    EXPECT_EQ(json.at("exploratory"), true);
+    EXPECT_FALSE(json.at("verdict").contains("confirmed"));
+    EXPECT_THAT(json.at("out").get<std::string>(), HasSubstr("exploratory: plan.toml declares " + reason));
+  };
+  expect_exploratory(" --plan " + at("plan.toml"), "this comparison, but nothing shows that it is older");
+  freeze("after");
+  expect_exploratory(" --preregistered " + at("after"), "this comparison, but the bundle, frozen ");
+  const auto plan = base::read_file(folder / "before/plan.toml", 1 << 16);
+  base::write_file_atomically(folder / "before/plan.toml", plan + "# changed\n");
+  expect_exploratory(" --preregistered " + at("before"), "this comparison, but files of the bundle were");
+  const auto other = compared(" --plan " + at("plan.toml") + " --models p95,longest --seed 2");
   EXPECT_EQ(other.at("exploratory"), true);
   EXPECT_FALSE(other.at("verdict").contains("confirmed"));
   EXPECT_THAT(other.at("out").get<std::string>(),

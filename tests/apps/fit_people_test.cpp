@@ -11,6 +11,7 @@
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/ptpe/people_fit.hpp"
 #include "tests/apps/pilot_database.hpp"
 #include "tests/apps/process.hpp"
 
@@ -62,6 +63,32 @@ TEST(FitPeople, WritesEachPersonsCurveAndTheFileOfOne) {
   ASSERT_EQ(file.band.size(), 5u);
   EXPECT_NEAR(file.band[0].mu[0], second.at("a_ci").at(0).get<double>(), 1e-9);
   EXPECT_NEAR(std::log(file.model.a), std::log(24), 0.5);
+  // A session keeps the curve, so that only the person's own session may have it.
+  EXPECT_EQ(file.participant, "P2");
+  const auto run = [&](const std::string& people) {
+    return apps::test::run_shell(VIP_BIN_DIR
+                                 "/vip-study run protocols/ptpe_pilot.toml --observer random --db " +
+                                 (pilot.folder / "own.db").string() + " --ptpe " + own.string() + people);
+  };
+  const auto others = run(" --participant P2 --participant P3");
+  EXPECT_EQ(others.exit_code, 1);
+  EXPECT_THAT(others.out, HasSubstr("holds the curve of P2, and would stay in P3's session"));
+  EXPECT_EQ(run(" --participant P2").exit_code, 0);
+}
+
+TEST(FitPeople, MarksCurvesThatLieElsewhereOrAreVague) {
+  stats::PersonContour one;
+  one.alone = stats::CurveMoments{};
+  one.own_share = 0.9;
+  one.in_reach = {0, 5};
+  one.deltas = 4;
+  one.log_mu_sd = 0.17;
+  EXPECT_EQ(one.doubt(), "");
+  one.deltas = 5;
+  EXPECT_THAT(one.doubt(), HasSubstr("outside the frame rates shown at most deltas"));
+  one.deltas = 4;
+  one.log_mu_sd = 0.19;
+  EXPECT_THAT(one.doubt(), HasSubstr("more than a factor of two"));
 }
 
 TEST(FitPeople, GivesNoFileOfAPersonWithoutAContour) {
@@ -72,6 +99,7 @@ TEST(FitPeople, GivesNoFileOfAPersonWithoutAContour) {
   EXPECT_THAT(equal.out, HasSubstr("all answers are equal"));
   EXPECT_THAT(equal.out, HasSubstr("vip-stats fit-ptpe with --out"));
   EXPECT_FALSE(std::filesystem::exists(own));
+  EXPECT_THAT(pilot.fit("--person '' --out " + own.string()).out, HasSubstr("--person: is empty"));
 }
 
 TEST(FitPeopleSlow, RefusesWithRemedies) {

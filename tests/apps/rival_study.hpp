@@ -9,6 +9,8 @@
 #include "libstudy/analysis/timing_predictors.hpp"
 #include "libstudy/pacing/schedule.hpp"
 #include "libstudy/store/store.hpp"
+#include "stats/base/file.hpp"
+#include "tests/common/protocols.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace rival_study {
@@ -30,13 +32,18 @@ inline study::PlayedTrial played_exactly(const study::Schedule& schedule, std::i
 /// The score (1 to 7) of a person, from 0, who saw frames with these predictors.
 using Score = std::function<int(int person, const study::TimingPredictors&)>;
 
+/// Text of the shipped pilot with trials of 2 s.
+inline std::string protocol_text() {
+  return test::with_keys(base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20),
+                         {{"duration_s", "2"}});
+}
+
 /// A finished pilot of the paper's 21 settings, 2 s each. `record`: false leaves the frames out of the
 /// record.
 /// `error_ms`: animation error that is recorded, by the number of the trial; none: not recorded.
 inline void write(const std::filesystem::path& path, int people, const Score& score, bool record = true,
                   const std::function<double(int trial)>& error_ms = {}) {
-  auto protocol = study::test::pilot();
-  study::override_trial_seconds(protocol, 2);
+  const auto protocol = study::parse_protocol(protocol_text(), "pilot.toml");
   std::vector<std::string> codes;
   for (int p = 0; p < people; ++p) codes.push_back("P" + std::to_string(p + 1));
   study::Store store(path, study::sqlite::Open::Create);

@@ -107,7 +107,8 @@ Json people_contours_json(const PeopleContours& contours) {
   json["population"] = {{"a", json_number(population.curve.a())},
                         {"a_ci", json_interval(population.a_ci)},
                         {"b", json_number(population.curve.b)},
-                        {"b_ci", json_interval(population.b_ci)}};
+                        {"b_ci", json_interval(population.b_ci)},
+                        {"in_reach", fit.in_reach}};
   json["between_people"] = {{"sd_log_a", spread_estimate_json(fit.sd_log_a)},
                             {"sd_b", spread_estimate_json(fit.sd_b)},
                             {"correlation", spread_estimate_json(fit.correlation)}};
@@ -136,6 +137,7 @@ sim::PtpeFile person_ptpe_file(const PeopleContours& contours, const stats::Pers
   file.n_simulated =
       static_cast<int>(std::count(data.simulated.begin(), data.simulated.end(), contours.code(one)));
   file.test_data = data.test_data;
+  file.participant = contours.code(one);
   file.protocol_sha256 = data.protocol.sha256;
   file.date_utc = base::utc_now();
   for (const double delta : contours.fit.deltas)

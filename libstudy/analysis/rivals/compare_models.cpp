@@ -87,6 +87,7 @@ class Document {
               {"seed", options_.seed},
               {"models", Json::array()},
               {"collinear", collinear()}};
+    json["plan"].erase("preregistered");  // the entry "preregistration" says it for the bundle
     for (const int m : comparison_.order) json["models"].push_back(model_json(m));
     for (std::size_t m = 0; m < comparison_.models.size(); ++m)
       if (!comparison_.models[m].fit)
@@ -340,7 +341,7 @@ stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& dat
 
 std::string why_exploratory(const RivalData& data, const std::vector<TimingModel>& models,
                             const stats::RivalComparisonOptions& options, bool plan_rules,
-                            const PlanInForce& plan) {
+                            const PlanInForce& plan, const std::optional<FrozenFacts>& frozen) {
   if (!plan.plan.comparison) return no_declared_comparison;
   const stats::DeclaredComparison& declared = *plan.plan.comparison;
   std::set<std::string> names;
@@ -351,7 +352,15 @@ std::string why_exploratory(const RivalData& data, const std::vector<TimingModel
     other.emplace_back("models");
   if (options.folds != declared.folds) other.emplace_back("groups of people");
   if (!plan_rules) other.emplace_back("rules of exclusion or seed");
-  return other.empty() ? "" : plan.source + " declares other " + base::enumerated(other);
+  if (!other.empty()) return plan.source + " declares other " + base::enumerated(other);
+  if (!frozen)
+    return plan.source +
+           " declares this comparison, but nothing shows that it is older than the data; give the folder of "
+           "vip-stats preregister by --preregistered";
+  const Json found = preregistration_json(*frozen, data.task);
+  return found.at("preregistered").get<bool>() ? ""
+                                               : plan.source + " declares this comparison, but " +
+                                                     found.at("problems").at(0).get<std::string>();
 }
 
 Json compare_models_json(const RivalData& data, const std::vector<TimingModel>& models,

@@ -24,11 +24,12 @@ stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& dat
                                                             const std::vector<TimingModel>& models,
                                                             const stats::RivalComparisonOptions& options);
 
-/// Why the comparison is not the one that the plan declares, in words; empty if it is. plan_rules: exclusions
-/// and seed are those of the plan.
+/// Why the comparison is not confirmatory, in words: the plan does not declare it, or nothing shows that the
+/// plan is older than the first answer. Empty: it is confirmatory. plan_rules: exclusions and seed are those
+/// of the plan. frozen: the preregistration that holds the plan; none: the plan is a file of its own.
 std::string why_exploratory(const RivalData& data, const std::vector<TimingModel>& models,
                             const stats::RivalComparisonOptions& options, bool plan_rules,
-                            const PlanInForce& plan);
+                            const PlanInForce& plan, const std::optional<FrozenFacts>& frozen);
 
 /// The document of `vip-stats compare-models --json` (docs/statistics.md): every number that the command
 /// prints. exploratory: what why_exploratory() says; if empty, the comparison is confirmatory, and the

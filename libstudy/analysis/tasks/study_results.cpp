@@ -178,29 +178,6 @@ std::set<std::string> sessions_of(const Json& document, const std::string& sha25
   return out;
 }
 
-/// The entry "preregistration". Its member "preregistered" is true if the bundle is intact, holds the
-/// protocol and was frozen before the first answer, and if no session's clock is in doubt. "problems" lists
-/// the reasons against it.
-Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
-  Json problems = Json::array();
-  if (!frozen.altered.empty())
-    problems.push_back("files of the bundle were altered: " + base::joined(frozen.altered));
-  if (std::count(frozen.protocols.begin(), frozen.protocols.end(), data.protocol.sha256) == 0)
-    problems.push_back("the bundle holds another protocol");
-  if (!data.imported.empty())
-    problems.push_back("answers were imported, and only their source says when they were given");
-  if (!data.doubtful_times.empty())
-    problems.push_back("the clock of a session is in doubt");
-  else if (!data.first_answer_utc.empty() && frozen.frozen_utc >= data.first_answer_utc)
-    problems.push_back("the bundle, frozen " + frozen.frozen_utc +
-                       ", is not older than the first answer, given " + data.first_answer_utc);
-  const bool holds = problems.empty();
-  return {{"sha256", frozen.sha256},
-          {"frozen_utc", frozen.frozen_utc},
-          {"preregistered", holds},
-          {"problems", problems}};
-}
-
 /// Date and number of participants of the earlier document, and the number of present participants without a
 /// session in that document.
 Json since_json(const Json& participants, const Json& earlier, const std::string& file) {

@@ -13,13 +13,6 @@
 
 namespace study {
 
-/// Facts about a preregistration (bundle) that the results of a study need.
-struct FrozenFacts {
-  std::string sha256, frozen_utc;      ///< the bundle's hash and date
-  std::vector<std::string> altered;    ///< files that differ from the bundle's manifest
-  std::vector<std::string> protocols;  ///< SHA-256 of the protocols in the bundle
-};
-
 struct FactorStudyRequest {
   std::filesystem::path database;  ///< used only for its name, for display
   PlanInForce plan;
