@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "libstudy/store/import/mapping.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
@@ -238,4 +240,30 @@ TEST(VipStudyImportE2e, PublicExportsHoldOnlyWhatTheMappingAllows) {
               HasSubstr("6 sessions were recorded by PsychoPy and imported."));
   EXPECT_THAT(base::read_file(folder / "d/dataset_description.json", 1 << 24),
               HasSubstr("6 sessions were recorded by PsychoPy and imported."));
+}
+
+TEST(VipStudyImport, AChoiceNamesTheFirstAndThenTheSecondByTheSameKey) {
+  const study::test::TemporaryFolder folder;
+  const auto mapping_of = [&](const std::string& first, const std::string& second) {
+    const std::string text =
+        "format = 1\ntool = \"x\"\nrows_in_order = true\n[columns]\nperson = \"who\"\n[columns.first]\n"
+        "mean_fps = \"lf\"\nsd_fps = \"ls\"\nfactors = {sharp = \"lq\"}\n[columns.second]\nmean_fps = "
+        "\"rf\"\n"
+        "sd_fps = \"rs\"\nfactors = {sharp = \"rq\"}\n[[answer]]\nquestion = \"q\"\ncolumn = \"c\"\n"
+        "choice_of = [\"" +
+        first + "\", \"" + second + "\"]\n";
+    std::ofstream(folder / "m.toml") << text;
+    return study::read_mapping(folder / "m.toml");
+  };
+  for (const auto& [one, other] : {std::pair("lf", "rf"), {"ls", "rs"}, {"lq", "rq"}, {"a.png", "b.png"}})
+    EXPECT_NO_THROW(mapping_of(one, other)) << one;
+  const auto refused = [&](const char* first, const char* second, const char* words) {
+    EXPECT_THAT([&] { mapping_of(first, second); }, testing::ThrowsMessage<base::Error>(HasSubstr(words)));
+  };
+  refused("rf", "lf", "names rf first, which is a column of [columns.second]");
+  refused("rf", "b.png", "names rf first");
+  refused("a.png", "lq", "names lq second, which is a column of [columns.first]");
+  refused("lf", "rs", "names lf and rs, which do not hold the same of both stimuli");
+  refused("lq", "rf", "which do not hold the same");
+  refused("lf", "b.png", "which do not hold the same");
 }

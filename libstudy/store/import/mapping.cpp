@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -127,6 +128,33 @@ void read_columns(const TomlTable& root, ImportMapping& out) {
         "of the mapping if each row is one trial and the rows are in the order of the trials");
 }
 
+/// The keys under which a stimulus names the column; those of factors begin with "factors.".
+std::set<std::string> keys_of_column(const StimulusColumns& stimulus, const std::string& column) {
+  std::set<std::string> out;
+  for (const auto& [key, name] : stimulus.columns)
+    if (name == column) out.insert(key);
+  for (const auto& [factor, name] : stimulus.factors)
+    if (name == column) out.insert("factors." + factor);
+  return out;
+}
+
+/// Refuses a choice_of that contradicts [columns.first] and [columns.second].
+void check_choice(const TomlTable& answer, const std::vector<std::string>& names, const ImportMapping& out) {
+  if (names.empty() || !out.pairs()) return;
+  const auto first = keys_of_column(out.first, names[0]), second = keys_of_column(out.second, names[1]);
+  const std::string mend =
+      "name a column of [columns.first], then that of [columns.second] with the same key";
+  if (first.empty() && !keys_of_column(out.second, names[0]).empty())
+    answer.fail("choice_of", "names " + names[0] + " first, which is a column of [columns.second]", mend);
+  if (second.empty() && !keys_of_column(out.first, names[1]).empty())
+    answer.fail("choice_of", "names " + names[1] + " second, which is a column of [columns.first]", mend);
+  // Both may be columns that say nothing of the setting, such as names of files.
+  if (first.empty() && second.empty()) return;
+  if (std::none_of(first.begin(), first.end(), [&](const std::string& key) { return second.contains(key); }))
+    answer.fail("choice_of",
+                "names " + base::enumerated(names) + ", which do not hold the same of both stimuli", mend);
+}
+
 void read_frames(const TomlTable& root, ImportMapping& out) {
   if (!root.has("frames")) return;
   const TomlTable frames = root.table("frames");
@@ -187,7 +215,10 @@ ImportMapping read_mapping(const fs::path& file) {
   out.only_person = root.string_or("only_person", "");
   out.rows = conditions(root, "row");
   read_columns(root, out);
-  for (const TomlTable& one : root.tables("answer")) out.answers.push_back(answer_column(one));
+  for (const TomlTable& one : root.tables("answer")) {
+    out.answers.push_back(answer_column(one));
+    check_choice(one, out.answers.back().choice_of, out);
+  }
   if (out.answers.empty())
     root.fail("", "has no table [[answer]]", "add [[answer]] with question = \"ID\" and column = \"COLUMN\"");
   read_frames(root, out);
