@@ -3,8 +3,10 @@
 #include <istream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "stats/base/json.hpp"
+#include "stats/base/json_keys.hpp"
 
 namespace base {
 
@@ -78,6 +80,62 @@ struct JsonLibrary {
     return {};
   }
 };
+
+namespace {
+
+/// Reads a text until an object names a key again.
+class KeyReader final : public nlohmann::json_sax<Library> {
+ public:
+  std::optional<RepeatedKey> found;
+
+  bool null() override { return value(); }
+  bool boolean(bool) override { return value(); }
+  bool number_integer(number_integer_t) override { return value(); }
+  bool number_unsigned(number_unsigned_t) override { return value(); }
+  bool number_float(number_float_t, const string_t&) override { return value(); }
+  bool string(string_t&) override { return value(); }
+  bool binary(binary_t&) override { return value(); }
+  bool start_array(std::size_t) override { return open(true); }
+  bool start_object(std::size_t) override { return open(false); }
+  bool end_array() override { return close(); }
+  bool end_object() override { return close(); }
+  bool key(string_t& key) override {
+    if (!levels_.back().insert(key).second) found = {key, entry_};
+    return !found;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;
+  }
+
+ private:
+  /// Counts the elements of the outermost list.
+  bool value() {
+    if (list_ && levels_.size() == 1) ++entry_;
+    return true;
+  }
+  bool open(bool list) {
+    if (levels_.empty()) list_ = list;
+    value();
+    levels_.emplace_back();
+    return true;
+  }
+  bool close() {
+    levels_.pop_back();
+    return true;
+  }
+
+  std::vector<std::set<std::string>> levels_;  ///< keys of each open object; none of an open list
+  bool list_ = false;                          ///< the outermost value is a list
+  std::size_t entry_ = 0;
+};
+
+}  // namespace
+
+std::optional<RepeatedKey> repeated_key(std::string_view json) {
+  KeyReader reader;
+  Library::sax_parse(json, &reader);
+  return reader.found;
+}
 
 Json Json::parse(std::string_view text) {
   if (nested_deeper_than(most_json_levels, text))

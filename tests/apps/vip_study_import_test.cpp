@@ -8,6 +8,7 @@
 #include <string>
 
 #include "libstudy/store/import/mapping.hpp"
+#include "libstudy/store/import/source_table.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -266,4 +267,40 @@ TEST(VipStudyImport, AChoiceNamesTheFirstAndThenTheSecondByTheSameKey) {
   refused("lf", "rs", "names lf and rs, which do not hold the same of both stimuli");
   refused("lq", "rf", "which do not hold the same");
   refused("lf", "b.png", "which do not hold the same");
+}
+
+TEST(VipStudyImport, BrokenJsonIsRefusedWithItsPlace) {
+  const study::test::TemporaryFolder folder;
+  const auto refused = [&](const std::string& text, const std::string& words, const std::string& mend) {
+    std::ofstream(folder / "t.json") << text;
+    EXPECT_THAT([&] { study::SourceTable table(folder / "t.json"); },
+                testing::ThrowsMessage<base::Error>(testing::AllOf(
+                    HasSubstr("t.json" + words), HasSubstr(mend), Not(HasSubstr("json.exception")))))
+        << text;
+  };
+  const std::string whole = ": is no whole JSON text: ";
+  refused("", whole + "it ends too early", "export it again: the file is empty");
+  refused("[{\"n\": 1},\n {\"n\": ", whole + "it ends too early, at line 2, column", "the file is cut short");
+  refused("[{\"n\": 1},\n {\"who\": \"P0", whole + "it ends too early, at line 2, column", "is cut short");
+  refused("[{\"n\": 1}]\n[]", whole + "it goes on behind its end, at line 2, column 1", "export it again");
+  refused("[{\"n\" 1}]", whole + "it has a mistake, at line 1, column", "export it again");
+  refused("[{\"n\": \"P\xE9\"}]", whole + "it has bytes that are not UTF-8, at line 1", "export it again");
+  refused("[{\"n\": 1}, {\"n\": 1, \"n\": 2}]", ": entry 2: has the key \"n\" twice", "which value holds");
+  refused("[[1], 2, {\"a\": {\"q\": 1, \"\\u0071\": 2}}]", ": entry 3: has the key \"q\" twice", "correct");
+}
+
+TEST(VipStudyImportE2e, AKeyThatAnAnswerGivesTwiceIsRefused) {
+  const study::test::TemporaryFolder folder;
+  std::ofstream(folder / "m.toml")
+      << "format = 1\ntool = \"x\"\nrows_in_order = true\nonly_person = \"P01\"\n[columns]\nmean_fps = "
+         "\"m\"\nsd_fps = \"s\"\n[[answer]]\nquestion = \"satisfaction\"\ncolumn = \"a\"\nkey = \"q\"\n";
+  std::ofstream(folder / "t.json") << R"([{"m": 10, "s": 0, "a": "{\"q\": 2, \"q\": 5}"}])";
+  std::ofstream(folder / "t.csv") << "m,s,a\n10,0,\"{\"\"q\"\": 2, \"\"q\"\": 5}\"\n";
+  for (const auto& [name, place] : {std::pair("t.json", "t.json: entry 1"), {"t.csv", "t.csv:2"}}) {
+    const auto done = import_from((folder / name), (folder / "m.toml"), folder / "x.db");
+    EXPECT_EQ(done.exit_code, 1);
+    EXPECT_THAT(done.out, HasSubstr(place + std::string(", column a: ")));
+    EXPECT_THAT(done.out, HasSubstr("has the key \"q\" twice in one object"));
+    EXPECT_FALSE(fs::exists(folder / "x.db"));
+  }
 }

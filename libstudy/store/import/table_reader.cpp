@@ -9,6 +9,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/json_keys.hpp"
 #include "stats/base/text.hpp"
 
 namespace study {
@@ -259,6 +260,10 @@ std::string TableReader::text_of(const PlacedAnswer& answer, const Row& row) con
     if (!json.is_object() || !json.contains(key))
       fail_at_field(table_, row, answer.column, "is no JSON object with \"" + key + "\"",
                     "correct `key` of the [[answer]], or leave the row out by a [[row]]");
+    if (const auto twice = base::repeated_key(text))
+      fail_at_field(table_, row, answer.column,
+                    "has the key \"" + base::shortened(twice->key, 60) + "\" twice in one object",
+                    "correct the row: which of the two values holds is not known");
     const base::Json& value = json[key];
     text = value.is_string() ? value.get<std::string>() : value.dump();
     if (has(mapping_.missing, text)) return "";
