@@ -3,6 +3,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 namespace study {
 struct MarkerPulse;
@@ -31,7 +32,7 @@ void add_markers_command(CLI::App& app);
 
 /// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);
-/// Adds --marker-pulse-ms.
-void add_marker_pulse(CLI::App& command, study::MarkerPulse& pulse);
+/// Adds --marker-pulse-ms. receiver: the option that it needs.
+void add_marker_pulse(CLI::App& command, CLI::Option* receiver, study::MarkerPulse& pulse);
 
 }  // namespace apps

@@ -52,11 +52,11 @@ void try_receiver(const MarkerOptions& options) {
         "check that the receiver is on and reads, or send less often with --interval-ms");
 }
 
-void tell_markers(const MarkerOptions& options) {
-  if (options.receiver.empty())
-    std::fputs(study::marker_code_table().c_str(), stdout);
-  else
+void tell_markers(const MarkerOptions& options, bool test) {
+  if (test)
     try_receiver(options);
+  else
+    std::fputs(study::marker_code_table().c_str(), stdout);
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ void add_markers_command(CLI::App& app) {
       ->check(CLI::Range(1, 10000))
       ->capture_default_str()
       ->needs(test);
-  add_marker_pulse(sub, options->pulse);
-  sub.callback([options] { tell_markers(*options); });
+  add_marker_pulse(sub, test, options->pulse);
+  sub.callback([options, test] { tell_markers(*options, test->count() > 0); });
 }
 
 }  // namespace apps

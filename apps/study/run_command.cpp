@@ -253,24 +253,24 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
       .add_flag("--mirror-reveal", options.mirror_reveal,
                 "With --mirror: show stimuli too; this unblinds and is logged")
       ->needs(mirror);
-  command
-      .add_option(
-          "--markers", options.markers,
-          "Send markers of events to a recording system: serial:/dev/ttyUSB0[:BAUD] (one byte each), "
-          "tcp:[HOST:]PORT (one line each) or lsl:NAME (Lab Streaming Layer); may be repeated. resume "
-          "needs it again")
-      ->allow_extra_args(false);
-  add_marker_pulse(command, options.pulse);
+  auto* markers = command.add_option(
+      "--markers", options.markers,
+      "Send markers of events to a recording system: serial:/dev/ttyUSB0[:BAUD] (one byte each), "
+      "tcp:[HOST:]PORT (one line each) or lsl:NAME (Lab Streaming Layer); may be repeated. resume "
+      "needs it again");
+  markers->allow_extra_args(false);
+  add_marker_pulse(command, markers, options.pulse);
 }
 
-void add_marker_pulse(CLI::App& command, study::MarkerPulse& pulse) {
+void add_marker_pulse(CLI::App& command, CLI::Option* receiver, study::MarkerPulse& pulse) {
   command
       .add_option(
           "--marker-pulse-ms", pulse.ms,
           "Time after which a serial marker's byte returns to 0, ms; 0: never, for boxes that make the "
           "pulse themselves")
       ->check(CLI::Range(0, 200))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(receiver);
 }
 
 void add_run_command(CLI::App& app) {

@@ -133,7 +133,15 @@ TEST(VipStudyMarkersE2e, WhatCannotBeSentIsRefusedBeforeTheSession) {
   ended = run_program(run_marked(folder.path(), {"--clock", "real", "--markers", "serial:/dev/none"}));
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("ls /dev/serial/by-id"));
+  ended = run_program(run_marked(folder.path(), {"--clock", "real", "--marker-pulse-ms", "5"}));
+  EXPECT_NE(ended.exit_code, 0);
+  EXPECT_THAT(ended.err, HasSubstr("--marker-pulse-ms requires --markers"));
   EXPECT_FALSE(fs::exists(folder / "s.db"));
+  ended = run_program({vip_study, "markers", "--test", ""});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("write serial:/dev/ttyUSB0"));
+  ended = run_program({vip_study, "markers", "--marker-pulse-ms", "5"});
+  EXPECT_THAT(ended.err, HasSubstr("--marker-pulse-ms requires --test"));
 }
 
 TEST(VipStudyMarkersE2e, TestMarkersTellLatencyOrWhyTheyWereLost) {
