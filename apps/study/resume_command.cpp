@@ -116,7 +116,8 @@ std::vector<study::RunOptions> recorded_options(const std::vector<study::OpenRun
 void warn_of_missing_markers(study::Store& store, const study::OpenRun& run, const PlayOptions& options) {
   for (const study::OpenSession& session : run.sessions) {
     for (const std::string& receiver : store.marker_receivers(session.id)) {
-      if (std::find(options.markers.begin(), options.markers.end(), receiver) != options.markers.end())
+      if (std::any_of(options.markers.begin(), options.markers.end(),
+                      [&](const std::string& given) { return study::same_marker_receiver(given, receiver); }))
         continue;
       std::fprintf(stderr,
                    "%s: warning: the session of %s sent markers to %s, and this command sends it none; "

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 #include <utility>
 
 #include "libstudy/base/clock.hpp"
@@ -128,10 +127,15 @@ void MarkerSender::finish() {
 }
 
 MarkerSenders::MarkerSenders(const std::vector<std::string>& receivers, const MarkerPulse& pulse) {
-  std::set<std::string> named;
-  for (const std::string& receiver : receivers) {
-    if (!named.insert(receiver).second)
-      throw base::Error("markers to " + receiver, "are asked for twice", "leave one out");
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    const std::string& receiver = receivers[i];
+    for (std::size_t before = 0; before < i; ++before)
+      if (same_marker_receiver(receivers[before], receiver))
+        throw base::Error("markers to " + receiver,
+                          receivers[before] == receiver
+                              ? "are asked for twice"
+                              : "go to the same receiver as those to " + receivers[before],
+                          "leave one out");
     senders_.push_back(std::make_unique<MarkerSender>(receiver, open_marker_receiver(receiver, pulse)));
   }
 }

@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "libstudy/base/clock.hpp"
 #include "stats/base/error.hpp"
 
@@ -37,6 +39,18 @@ std::unique_ptr<MarkerReceiver> open_marker_receiver(const std::string& text, co
         "write serial:/dev/ttyUSB0, serial:/dev/ttyUSB0:9600, tcp:PORT, tcp:HOST:PORT or lsl:NAME");
   if (kind == "serial") return open_serial_receiver(place, rest, pulse);
   return kind == "tcp" ? open_tcp_receiver(place, rest) : open_lsl_receiver(place, rest);
+}
+
+bool same_marker_receiver(const std::string& one, const std::string& other) {
+  if (one == other) return true;
+  const auto destinations = [](const std::string& text) -> std::vector<std::string> {
+    if (text.starts_with("serial:")) return serial_destinations(text.substr(7));
+    if (text.starts_with("tcp:")) return tcp_destinations(text.substr(4));
+    return {};
+  };
+  const auto there = destinations(other);
+  const auto here = destinations(one);
+  return std::find_first_of(here.begin(), here.end(), there.begin(), there.end()) != here.end();
 }
 
 }  // namespace study

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "libstudy/markers/marker.hpp"
 
@@ -47,6 +48,15 @@ std::unique_ptr<MarkerReceiver> open_serial_receiver(const std::string& text, co
                                                      const MarkerPulse& pulse);
 std::unique_ptr<MarkerReceiver> open_tcp_receiver(const std::string& text, const std::string& rest);
 std::unique_ptr<MarkerReceiver> open_lsl_receiver(const std::string& text, const std::string& rest);
+
+/// True if both names lead to one receiver: one device or FIFO, or a common address and port. A name that
+/// leads nowhere now is compared as text.
+bool same_marker_receiver(const std::string& one, const std::string& other);
+
+/// Where the text behind "serial:" or "tcp:" leads: the device or file of a serial port, each address of a
+/// TCP receiver. Empty: it leads nowhere.
+std::vector<std::string> serial_destinations(const std::string& rest);
+std::vector<std::string> tcp_destinations(const std::string& rest);
 
 /// A file descriptor that closes itself.
 class MarkerFile {

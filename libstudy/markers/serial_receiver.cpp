@@ -190,6 +190,13 @@ class SerialReceiver final : public MarkerReceiver {
 
 }  // namespace
 
+std::vector<std::string> serial_destinations(const std::string& rest) {
+  struct stat found {};
+  if (::stat(parse_serial(rest).path.c_str(), &found) != 0) return {};
+  if (S_ISCHR(found.st_mode)) return {"serial device " + std::to_string(found.st_rdev)};
+  return {"serial file " + std::to_string(found.st_dev) + " " + std::to_string(found.st_ino)};
+}
+
 std::unique_ptr<MarkerReceiver> open_serial_receiver(const std::string& text, const std::string& rest,
                                                      const MarkerPulse& pulse) {
   return std::make_unique<SerialReceiver>(text, rest, pulse);

@@ -151,6 +151,24 @@ class TcpReceiver final : public MarkerReceiver {
 
 }  // namespace
 
+std::vector<std::string> tcp_destinations(const std::string& rest) {
+  std::vector<TcpAddress> addresses;
+  try {
+    addresses = look_up("", rest);
+  } catch (const base::Error&) {  // open_tcp_receiver() tells what is wrong
+    return {};
+  }
+  std::vector<std::string> out;
+  for (const TcpAddress& address : addresses) {
+    std::array<char, NI_MAXHOST> host{};
+    std::array<char, NI_MAXSERV> port{};
+    if (::getnameinfo(reinterpret_cast<const sockaddr*>(&address.bytes), address.size, host.data(),
+                      host.size(), port.data(), port.size(), NI_NUMERICHOST | NI_NUMERICSERV) == 0)
+      out.push_back(std::string("tcp ") + host.data() + " " + port.data());
+  }
+  return out;
+}
+
 std::unique_ptr<MarkerReceiver> open_tcp_receiver(const std::string& text, const std::string& rest) {
   return std::make_unique<TcpReceiver>(text, rest);
 }

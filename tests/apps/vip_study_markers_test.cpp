@@ -4,7 +4,9 @@
 
 #include <memory>
 #include <sstream>
+#include <utility>
 
+#include "libstudy/markers/receiver.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/libstudy/marker_receivers.hpp"
 
@@ -142,6 +144,29 @@ TEST(VipStudyMarkersE2e, WhatCannotBeSentIsRefusedBeforeTheSession) {
   EXPECT_THAT(ended.err, HasSubstr("write serial:/dev/ttyUSB0"));
   ended = run_program({vip_study, "markers", "--marker-pulse-ms", "5"});
   EXPECT_THAT(ended.err, HasSubstr("--marker-pulse-ms requires --test"));
+}
+
+TEST(VipStudyMarkersE2e, OneReceiverWithTwoNamesIsRefused) {
+  const TemporaryFolder folder;
+  const ::test::Listener listener;
+  const ::test::SerialLine box;
+  fs::create_symlink(box.path(), folder.path() / "box");
+  const std::string port = listener.port(), link = "serial:" + (folder / "box").string();
+  const std::vector<std::pair<std::string, std::string>> pairs{
+      {"tcp:" + port, "tcp:127.0.0.1:" + port},
+      {"tcp:127.0.0.1:" + port, "tcp:localhost:" + port},
+      {"serial:" + box.path(), link + ":9600"},
+      {link, "serial:" + folder.path().string() + "/../" + folder.path().filename().string() + "/box"}};
+  for (const auto& [one, other] : pairs) {
+    const Ended ended =
+        run_program(run_marked(folder.path(), {"--clock", "real", "--markers", one, "--markers", other}));
+    EXPECT_EQ(ended.exit_code, 1) << one << " " << other;
+    EXPECT_THAT(ended.err, HasSubstr("go to the same receiver as those to " + one));
+  }
+  EXPECT_FALSE(fs::exists(folder / "s.db"));
+  EXPECT_FALSE(study::same_marker_receiver("tcp:" + port, "tcp:9"));
+  EXPECT_FALSE(study::same_marker_receiver("serial:/dev/none", "serial:/dev/none2"));
+  EXPECT_FALSE(study::same_marker_receiver("lsl:a", "lsl:b"));
 }
 
 TEST(VipStudyMarkersE2e, TestMarkersTellLatencyOrWhyTheyWereLost) {
