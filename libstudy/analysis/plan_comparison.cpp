@@ -37,7 +37,15 @@ stats::DeclaredComparison read_comparison(const base::TomlTable& table, const st
   if (!out.expected.empty() &&
       std::find(out.models.begin(), out.models.end(), out.expected) == out.models.end())
     table.fail("expected", "is none of the models", base::use_one_of(out.expected, out.models));
-  if (protocol) check_question(table, out.question, *protocol);
+  if (protocol) {
+    check_question(table, out.question, *protocol);
+    if (out.folds > protocol->participants)
+      table.fail("folds",
+                 "is more than the " + std::to_string(protocol->participants) +
+                     " participants that protocol " + protocol->name + " plans",
+                 "write at most " + std::to_string(protocol->participants) +
+                     ", or 0 to leave out each person in turn");
+  }
   return out;
 }
 

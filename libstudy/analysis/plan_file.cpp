@@ -100,6 +100,8 @@ stats::PilotRules read_pilot(const base::TomlTable& table) {
 stats::AnalysisPlan read_keys(const base::TomlTable& root, const std::string& file,
                               std::vector<std::string>& protocols, const Protocol* protocol) {
   stats::AnalysisPlan plan;
+  if (!root.has("format"))
+    root.fail("format", "is missing", "write format = 1 at the top of the plan, above its first [table]");
   root.integer("format", {1, 1});
   if (root.has("protocols")) protocols = root.strings("protocols");
   constexpr base::Range inside{1e-6, 0.499999};

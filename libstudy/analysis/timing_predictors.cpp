@@ -122,8 +122,12 @@ std::vector<TimingModel> timing_models(const std::vector<std::string>& names, co
   for (const std::string& name : names) {
     auto model = model_of(name, place);
     for (const TimingModel& other : out)
-      if (other.predictors == model.predictors)
-        throw base::Error(place, "names the model '" + name + "' twice", "name each model once");
+      if (std::is_permutation(other.predictors.begin(), other.predictors.end(), model.predictors.begin(),
+                              model.predictors.end()))
+        throw base::Error(place,
+                          "names the model '" + name + "' twice" +
+                              (other.name == name ? "" : ", the first time as '" + other.name + "'"),
+                          "name each model once");
     out.push_back(std::move(model));
   }
   if (out.size() < 2)

@@ -206,6 +206,23 @@ TEST(CompareModels, APlanIsReadBackAndChecked) {
   refused(text, "which shows pairs", &task2);
   refused("format = 1\n[model_comparison]\nquestion = \"joy\"\nmodels = [\"p95\", \"p99\"]\n",
           "names no rating", &pilot);
+  refused(head + "models = [\"p95\", \"p99\"]\nfolds = 17\n", "is more than the 16 participants", &pilot);
+  EXPECT_NO_THROW(plan_of(head + "models = [\"p95\", \"p99\"]\nfolds = 16\n", &pilot));
+  refused(head + "models = [\"longest+p95\", \"p95+longest\"]\n",
+          "'p95+longest' twice, the first time as 'longest+p95'");
+  refused(head + "models = [\"ptpe\", \"rate_sd+mean_rate\"]\n", "the first time as 'ptpe'");
+  refused(head.substr(head.find('[')) + "models = [\"p95\", \"p99\"]\n", "write format = 1");
+}
+
+TEST(CompareModels, TheExampleInTheDocsIsAPlan) {
+  const TemporaryFolder folder;
+  const std::string page = base::read_file(base::resource("docs/statistics.md"), 1 << 22);
+  const auto table = page.find("[model_comparison]\nquestion");
+  ASSERT_NE(table, std::string::npos);
+  const auto begin = page.rfind("```toml\n", table) + 8;
+  base::write_file_atomically(folder / "plan.toml", page.substr(begin, page.find("```", table) - begin));
+  const auto pilot = study::read_protocol(base::resource("protocols/ptpe_pilot.toml"));
+  EXPECT_EQ(study::read_plan(folder / "plan.toml", &pilot).plan.comparison->expected, "longest");
 }
 
 TEST(CompareModelsE2e, WhatThePlanDeclaresIsConfirmatoryAlsoIfThereIsNothingToPredict) {
