@@ -90,16 +90,18 @@ TEST(VipStudyMarkersE2e, AKilledSessionGoesOnAndSoDoItsMarkers) {
   }
   const std::string before = listener.read_until("the end of the connection");
   EXPECT_THAT(events_of(before).front(), "event");
-  const auto resumed = Process({vip_study, "resume", "--db", folder / "s.db", "--markers", tcp}).wait();
+  const std::string again = "tcp:127.0.0.1:" + listener.port();  // another name of the same receiver
+  const auto resumed = Process({vip_study, "resume", "--db", folder / "s.db", "--markers", again}).wait();
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.err, HasSubstr("sent markers to " + serial + ", and this command sends it none"));
+  EXPECT_THAT(resumed.err, Not(HasSubstr("sent markers to " + tcp)));
   listener.accept();
   const std::string after = listener.read_until("session_end");
   EXPECT_THAT(events_of(after), ElementsAre("event", "session_begin", "trial_begin", "stimulus_onset",
                                             "question_shown", "answer_given", "trial_end", "session_end"));
   EXPECT_THAT(after, HasSubstr("trial_begin,129,0,1,2,"));  // the second showing of the trial at position 1
   EXPECT_THAT(resumed.out,
-              HasSubstr("markers to " + tcp + ": 7 written, 0 lost; from event to completed write"));
+              HasSubstr("markers to " + again + ": 7 written, 0 lost; from event to completed write"));
   // Session begin, first trial; each byte between two zeros.
   EXPECT_EQ(box.read(8).substr(0, 8), std::string("\0\x40\0\x80\0\x03\0\x05", 8));
   // Onsets: of the first trial at both receivers, stored when it was done, and of the second after the kill.
