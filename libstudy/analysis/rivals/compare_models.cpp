@@ -355,8 +355,9 @@ std::string why_exploratory(const RivalData& data, const std::vector<TimingModel
   if (!other.empty()) return plan.source + " declares other " + base::enumerated(other);
   if (!frozen)
     return plan.source +
-           " declares this comparison, but nothing shows that it is older than the data; give the folder of "
-           "vip-stats preregister by --preregistered";
+           " declares this comparison, but nothing shows that it is older than the data (--preregistered "
+           "reads a "
+           "preregistration)";
   const Json found = preregistration_json(*frozen, data.task);
   return found.at("preregistered").get<bool>() ? ""
                                                : plan.source + " declares this comparison, but " +
