@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libstudy/analysis/json_parts.hpp"
 #include "libstudy/analysis/trial_record.hpp"
 #include "libstudy/store/read/frame_times.hpp"
 #include "stats/base/text.hpp"
