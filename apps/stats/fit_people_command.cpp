@@ -69,7 +69,8 @@ void print_population(const study::PeopleContours& contours) {
               rate_ends(population.a_ci).c_str(), population.curve.b, ends(population.b_ci, 4).c_str());
   if (contours.out_of_reach())
     std::printf(
-        "  note: this curve lies outside the frame rates shown at most deltas: another --level is needed\n");
+        "  note: this curve lies outside the frame rates shown at more than half of the deltas: another "
+        "--level is needed\n");
   std::printf("  SD between people: log a %.3f %s, b %.4f %s; correlation %.2f %s\n", fit.sd_log_a.value,
               ends(fit.sd_log_a.ci, 3).c_str(), fit.sd_b.value, ends(fit.sd_b.ci, 4).c_str(),
               fit.correlation.value, ends(fit.correlation.ci, 2).c_str());

@@ -54,7 +54,7 @@ std::string marker_code_table();
 
 /// A time on the computer's clock (CLOCK_MONOTONIC) in UTC, ns since 1970.
 std::int64_t utc_ns_of(std::int64_t clock_ns);
-/// Such as 2026-11-29T23:30:00.123456Z.
+/// Text of a UTC time with microseconds, such as "2026-11-29T23:30:00.123456Z".
 std::string marker_utc(std::int64_t utc_ns);
 
 /// Names of the columns of marker_line(), separated by commas, with a line feed.

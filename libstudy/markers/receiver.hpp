@@ -21,9 +21,9 @@ inline constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max(
 class MarkerReceiver {
  public:
   virtual ~MarkerReceiver() = default;
-  /// Hands the marker over, and waits at most about marker_patience_ns. Returns why it is lost; empty: it was
-  /// handed over. A later call tries again to reach a receiver that is gone. queued_ns: when the session sent
-  /// it, on CLOCK_MONOTONIC.
+  /// Hands the marker over, and waits at most about marker_patience_ns. Returns why the marker is lost, or an
+  /// empty text if it was handed over. A later call tries again to reach a receiver that is gone. queued_ns:
+  /// when the session sent it, on CLOCK_MONOTONIC.
   virtual std::string write(const Marker& marker, std::int64_t queued_ns) = 0;
   /// The time on CLOCK_MONOTONIC, ns, at which rest() is due; never_ns: no pulse is under way.
   virtual std::int64_t rest_due_ns() const { return never_ns; }

@@ -4,6 +4,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/json_problems.hpp"
 #include "stats/base/text.hpp"
 
 namespace study {
@@ -67,7 +68,7 @@ CapFrameXLog read_capframex_json(const std::string& file, const std::string& tex
   try {
     root = base::Json::parse(text);
   } catch (const base::JsonError& error) {
-    fail_at(file, std::string("is no whole JSON text: ") + base::shortened(error.what(), 300));
+    fail_at(file, "is no whole JSON text: " + base::json_problem(error.what()));
   }
   if (!root.contains("Runs") || !root["Runs"].is_array() || root["Runs"].empty())
     fail_at(file, "is JSON without the list Runs of a capture");

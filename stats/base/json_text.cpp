@@ -6,7 +6,7 @@
 #include <set>
 
 #include "stats/base/json.hpp"
-#include "stats/base/json_keys.hpp"
+#include "stats/base/json_problems.hpp"
 
 namespace base {
 
@@ -130,6 +130,21 @@ class KeyReader final : public nlohmann::json_sax<Library> {
 };
 
 }  // namespace
+
+std::string json_problem(const std::string& message) {
+  const auto says = [&](const char* words) { return message.find(words) != std::string::npos; };
+  std::string problem =
+      says("unexpected end of input") || says("missing closing quote") || says("empty input")
+          ? "it ends too early"
+      : says("expected end of input") ? "it goes on behind its end"
+      : says("UTF-8")                 ? "it has bytes that are not UTF-8"
+      : says("nested deeper than")    ? message
+                                      : "it has a mistake";
+  if (const std::size_t line = message.find("line "), end = message.find(':', line);
+      line != std::string::npos && end != std::string::npos)
+    problem += ", at " + message.substr(line, end - line);
+  return problem;
+}
 
 std::optional<RepeatedKey> repeated_key(std::string_view json) {
   KeyReader reader;

@@ -24,8 +24,8 @@ struct Lapses {
 };
 
 inline constexpr double largest_lapse = 0.5;  ///< upper bound of a lapse rate that is estimated
-/// The lapse rate as a function of the parameter that a minimiser varies: `least` at 0, largest_lapse at
-/// infinity. `slope` receives the derivative of the rate for `root`.
+/// The lapse rate that belongs to `root`, the parameter that a minimiser varies without bounds. The rate is
+/// `least` at root 0 and approaches largest_lapse for large roots. `slope` receives its derivative by `root`.
 double lapse_rate(double root, double least, double& slope);
 
 /// The term of a rating that may be a guess, from the term of an attentive one: log_p and its derivatives for

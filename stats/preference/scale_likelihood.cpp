@@ -97,8 +97,9 @@ Vector wins_of(const ScaleAnswers& answers, int conditions) {
   return wins;
 }
 
-/// True if some values of the conditions differ by 1 in every pair, the first above the second: such values
-/// and a bias towards the condition shown first predict the same choices.
+/// True if the conditions can be given values so that in every pair shown the first condition has 1 more than
+/// the second. These values and a bias towards the condition shown first then predict the same choices, and
+/// no answers tell them apart.
 bool orders_stand_for_values(const ScaleAnswers& answers, int conditions) {
   std::vector<std::optional<int>> value(at(conditions));
   for (int start = 0; start < conditions; ++start) {

@@ -196,7 +196,8 @@ double variance_sum(const PeopleRows& rows, const PersonMoments& m) {
 }
 
 std::vector<PersonContour> contours_of(std::span<const PilotRating> ratings, PilotMean mean,
-                                       PeoplePooling& pooling, const PeopleRows& rows, double z) {
+                                       PeoplePooling& pooling, const PeopleRows& rows, double z,
+                                       std::size_t deltas) {
   const auto given = pooling.moments();
   const auto whole = pooling.whole_moments();
   std::vector<PersonContour> out(given.size());
@@ -208,8 +209,6 @@ std::vector<PersonContour> contours_of(std::span<const PilotRating> ratings, Pil
     categories[p].insert(rows.category[i]);
   }
   const double over_people = variance_sum(rows, pooling.spread());
-  std::set<double> deltas;
-  for (const auto& r : ratings) deltas.insert(r.delta);
   for (std::size_t p = 0; p < out.size(); ++p) {
     PersonContour& one = out[p];
     one.settings = static_cast<int>(settings_of(ratings, one.participant).size());
@@ -222,7 +221,7 @@ std::vector<PersonContour> contours_of(std::span<const PilotRating> ratings, Pil
     one.alone = curve_alone(pooling, rows, static_cast<int>(p), given[p].mean);
     one.own_share = 1 - variance_sum(rows, given[p]) / over_people;
     one.in_reach = reached(ratings, mean, curve);
-    one.deltas = deltas.size();
+    one.out_of_reach = 2 * one.in_reach.size() < deltas;
     one.log_mu_sd = std::sqrt(variance_sum(rows, whole[p]) / static_cast<double>(rows.d.size()));
   }
   return out;
@@ -237,7 +236,7 @@ double CurveMoments::log_mu_sd(double delta) const {
 std::string PersonContour::doubt() const {
   if (same_answer) return "all answers are equal";
   if (!alone) return alone.reason();
-  if (2 * in_reach.size() < deltas) return "the curve lies outside the frame rates shown at most deltas";
+  if (out_of_reach) return "the curve lies outside the frame rates shown at more than half of the deltas";
   if (log_mu_sd > largest_log_mu_sd) return "the interval of the curve spans more than a factor of two";
   if (own_share < least_own_share) return "the answers say too little: the curve is mostly the population's";
   return "";
@@ -301,7 +300,7 @@ Result<PeopleFit> fit_people(std::span<const PilotRating> ratings, PilotMean mea
   for (const auto& [delta, mu] : settings)
     if (fit.deltas.empty() || fit.deltas.back() != delta) fit.deltas.push_back(delta);
   fit.in_reach = reached(ratings, mean, fit.population.curve);
-  fit.people = contours_of(ratings, mean, pooling, rows, z);
+  fit.people = contours_of(ratings, mean, pooling, rows, z, fit.deltas.size());
   return fit;
 }
 

@@ -83,7 +83,7 @@ struct PersonContour {
   /// the person's own answers say nothing, 1 if they say all.
   double own_share = 0;
   std::vector<double> in_reach;  ///< nominal deltas at which the curve lies among the frame rates shown
-  std::size_t deltas = 0;        ///< number of nominal deltas shown
+  bool out_of_reach = false;     ///< the curve lies outside them at more than half of the deltas shown
   double log_mu_sd = 0;          ///< root mean square of the SD of log mu(delta), over the ratings' deltas
 
   /// Why the answers do not determine a contour of the person's own, as a phrase; empty: they do.

@@ -80,13 +80,11 @@ TEST(FitPeople, MarksCurvesThatLieElsewhereOrAreVague) {
   stats::PersonContour one;
   one.alone = stats::CurveMoments{};
   one.own_share = 0.9;
-  one.in_reach = {0, 5};
-  one.deltas = 4;
   one.log_mu_sd = 0.17;
   EXPECT_EQ(one.doubt(), "");
-  one.deltas = 5;
-  EXPECT_THAT(one.doubt(), HasSubstr("outside the frame rates shown at most deltas"));
-  one.deltas = 4;
+  one.out_of_reach = true;
+  EXPECT_THAT(one.doubt(), HasSubstr("outside the frame rates shown at more than half of the deltas"));
+  one.out_of_reach = false;
   one.log_mu_sd = 0.19;
   EXPECT_THAT(one.doubt(), HasSubstr("more than a factor of two"));
 }

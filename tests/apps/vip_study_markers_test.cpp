@@ -104,7 +104,8 @@ TEST(VipStudyMarkersE2e, AKilledSessionGoesOnAndSoDoItsMarkers) {
               HasSubstr("markers to " + again + ": 7 written, 0 lost; from event to completed write"));
   // Session begin, first trial; each byte between two zeros.
   EXPECT_EQ(box.read(8).substr(0, 8), std::string("\0\x40\0\x80\0\x03\0\x05", 8));
-  // Onsets: of the first trial at both receivers, stored when it was done, and of the second after the kill.
+  // Stored are the onset of the first trial at both receivers, and that of the second trial, which was shown
+  // after the kill.
   EXPECT_EQ(
       count_in(folder / "s.db",
                "SELECT count(*) FROM marker m JOIN presentation p ON m.clock_ns BETWEEN p.start_ns AND "

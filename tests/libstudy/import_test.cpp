@@ -275,7 +275,7 @@ TEST_F(Import, JsonIsReadAsTheCsvOfTheSameTrials) {
   const auto refused = [&](const std::string& text, const char* words) {
     EXPECT_THAT([&] { sessions("t.json", text); }, ThrowsMessage<base::Error>(HasSubstr(words))) << text;
   };
-  refused("", "t.json: is no whole JSON text");
+  refused("", "t.json: is no whole JSON text: it ends too early");
   refused(R"([{"who": "P01", "n": 1, "ki)", "t.json: is no whole JSON text");
   refused("[{\"who\": \"P\xE9\"}]", "t.json: is no whole JSON text");
   refused("[]", "t.json: is no JSON list with entries");
@@ -288,8 +288,8 @@ TEST_F(Import, JsonIsReadAsTheCsvOfTheSameTrials) {
           "t.json: entry 1, column a: ");
 }
 
-/// A table with the pairs of the first group of Task 2, the later cell first, and "chosen" by a method's
-/// name.
+/// A CSV table with the pairs of Task 2's first group. Of each pair the later cell is shown first. The column
+/// "chosen" holds the name of the method that the person chose.
 std::string pairs_of(const Protocol& protocol, const std::string& person) {
   std::string out;
   int n = 0;

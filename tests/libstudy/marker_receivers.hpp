@@ -16,7 +16,8 @@
 
 namespace test {
 
-/// Reads what is there within `within_ms`, at least one byte; empty: nothing, or the end.
+/// Waits until there are bytes to read, at most `within_ms`, and reads them. Empty if none came or the file
+/// has ended.
 inline std::string read_some(int file, int within_ms = 20'000) {
   pollfd input{file, POLLIN, 0};
   char bytes[4096];

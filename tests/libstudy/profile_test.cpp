@@ -247,7 +247,8 @@ TEST(Capture, RefusesJunkWithItsLine) {
   EXPECT_THAT(error_of("TimeInSeconds,FrameTime\n0,16\n1,16\n2,16\n"),
               HasSubstr("does not hold every frame"));
   const auto run = [](const std::string& data) { return R"({"Runs": [{"CaptureData": {)" + data + "}}]}"; };
-  EXPECT_THAT(error_of(R"({"Runs": [{"Capt)"), HasSubstr("game.csv: is no whole JSON text"));
+  EXPECT_THAT(error_of(R"({"Runs": [{"Capt)"),
+              HasSubstr("game.csv: is no whole JSON text: it ends too early, at line 1"));
   EXPECT_THAT(error_of("{}"), HasSubstr("game.csv: is JSON without the list Runs"));
   EXPECT_THAT(error_of(run(R"("MsBetweenPresents": [16, 17], "Dropped": [true])")),
               HasSubstr("game.csv: run 1: has 2 values of MsBetweenPresents and 1 of Dropped"));

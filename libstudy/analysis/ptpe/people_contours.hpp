@@ -21,7 +21,8 @@ struct PeopleContours {
   double confidence = 0.95;
 
   const std::string& code(const stats::PersonContour& one) const;
-  /// True if the population's curve lies outside the frame rates shown at most deltas.
+  /// True if the population's curve lies outside the frame rates shown at more than half of the
+  /// deltas.
   bool out_of_reach() const { return 2 * fit.in_reach.size() < fit.deltas.size(); }
   /// Why this participant has no contour of the person's own, as a phrase; empty: the contour may be used.
   std::string doubt(const stats::PersonContour& one) const;

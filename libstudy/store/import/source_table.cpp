@@ -7,7 +7,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
-#include "stats/base/json_keys.hpp"
+#include "stats/base/json_problems.hpp"
 #include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 
@@ -29,26 +29,6 @@ std::string json_field(const base::Json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.text();
   return value.dump();
-}
-
-/// Throws what is wrong with a text that is no JSON, and where. message: of base::JsonError.
-[[noreturn]] void fail_as_broken_json(const std::string& file, const std::string& text,
-                                      const std::string& message) {
-  const auto says = [&](const char* words) { return message.find(words) != std::string::npos; };
-  const bool cut = says("unexpected end of input") || says("missing closing quote") || says("empty input");
-  std::string problem = cut                             ? "it ends too early"
-                        : says("expected end of input") ? "it goes on behind its end"
-                        : says("UTF-8")                 ? "it has bytes that are not UTF-8"
-                        : says("nested deeper than")    ? message
-                                                        : "it has a mistake";
-  std::string where;
-  if (const std::size_t line = message.find("line "), end = message.find(':', line);
-      line != std::string::npos && end != std::string::npos)
-    where = ", at " + message.substr(line, end - line);
-  throw base::Error(file, "is no whole JSON text: " + problem + where,
-                    text.empty() ? "export it again: the file is empty"
-                    : cut        ? "export it again: the file is cut short"
-                                 : "export it again, or give the table as CSV");
 }
 
 }  // namespace
@@ -75,7 +55,12 @@ void SourceTable::read_json(const std::string& text) {
   try {
     root = base::Json::parse(text);
   } catch (const base::JsonError& error) {
-    fail_as_broken_json(file_.string(), text, error.what());
+    const std::string problem = base::json_problem(error.what());
+    const bool cut = problem.starts_with("it ends too early");
+    throw base::Error(file_.string(), "is no whole JSON text: " + problem,
+                      text.empty() ? "export it again: the file is empty"
+                      : cut        ? "export it again: the file is cut short"
+                                   : "export it again, or give the table as CSV");
   }
   if (const auto twice = base::repeated_key(text))
     throw base::Error(

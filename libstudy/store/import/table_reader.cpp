@@ -9,7 +9,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
-#include "stats/base/json_keys.hpp"
+#include "stats/base/json_problems.hpp"
 #include "stats/base/text.hpp"
 
 namespace study {

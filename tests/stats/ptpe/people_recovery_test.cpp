@@ -95,7 +95,7 @@ struct Mean {
   double root() const { return std::sqrt((*this)()); }
 };
 
-/// Sums over people: of log a and of log mu, squared errors.
+/// Squared errors of log a (names ending in _a) and of log mu, as means over people.
 struct Errors {
   Mean pooled_a, alone_a, plane_a, population_a, pooled, alone, population;
 };
