@@ -52,7 +52,7 @@ void try_receiver(const MarkerOptions& options) {
         "check that the receiver is on and reads, or send less often with --interval-ms");
 }
 
-void tell_markers(const MarkerOptions& options, bool test) {
+void print_or_test_markers(const MarkerOptions& options, bool test) {
   if (test)
     try_receiver(options);
   else
@@ -78,7 +78,7 @@ void add_markers_command(CLI::App& app) {
       ->capture_default_str()
       ->needs(test);
   add_marker_pulse(sub, test, options->pulse);
-  sub.callback([options, test] { tell_markers(*options, test->count() > 0); });
+  sub.callback([options, test] { print_or_test_markers(*options, test->count() > 0); });
 }
 
 }  // namespace apps

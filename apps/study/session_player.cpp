@@ -148,7 +148,7 @@ class Steering {
     study::SessionHooks hooks;
     if (markers_) hooks.mark = [this](const study::Marker& marker) { markers_->send(marker); };
     hooks.begins = [this, &session](const study::OpenUnit& unit) {
-      tell_of_markers();
+      report_markers();
       if (console_) console_->begins(unit);
       if (events_) print_begins(session, unit, protocol_);
     };
@@ -156,7 +156,7 @@ class Steering {
     if (console_) hooks.shown = [this](const study::FrameRecord& frame) { console_->shown(frame); };
     hooks.done = [this, &session](const study::UnitDone& unit) {
       if (markers_) store_.add_markers(session.id, markers_->take());
-      tell_of_markers();
+      report_markers();
       if (progress_) progress_->update(++done_);
       if (console_) console_->done(unit);
       if (events_) print_done(unit, protocol_);
@@ -179,14 +179,14 @@ class Steering {
   void store_markers(const study::OpenSession& session) {
     if (!markers_) return;
     store_.add_markers(session.id, markers_->take_settled());
-    tell_of_markers();
+    report_markers();
   }
 
   /// True if the console has reopened trials that must be shown again.
   bool take_reopened() { return console_ && console_->take_reopened(); }
 
  private:
-  void tell_of_markers() {
+  void report_markers() {
     if (!markers_) return;
     for (const std::string& news : markers_->take_news()) {
       if (console_)
@@ -299,7 +299,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
       } catch (...) {
         try {
           steering.store_markers(session);
-        } catch (const std::exception&) {  // the first error is told
+        } catch (const std::exception&) {  // the first error is reported
         }
         throw;
       }

@@ -1,6 +1,6 @@
 #pragma once
-/// Markers: what happens in a session, as recording systems (EEG, eye trackers) are told it. A marker holds
-/// no participant code, no answer and no words.
+/// Markers: events of a session that are sent to recording systems, such as EEG and eye trackers. A marker
+/// holds no participant code, no answer and no words.
 
 #include <cstdint>
 #include <span>

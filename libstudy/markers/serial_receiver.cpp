@@ -119,7 +119,7 @@ class SerialReceiver final : public MarkerReceiver {
     file_.reset(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
     if (file_.is_open()) return set_up();
     if (errno == ENXIO)
-      throw base::Error(place_, "nobody reads " + path, "start the program that reads it first");
+      throw base::Error(place_, "no program reads " + path, "start the program that reads it first");
     throw base::Error(place_, path + " cannot be opened: " + std::strerror(errno),
                       errno == EACCES ? "add the user to the port's group (often dialout), and log in again"
                                       : "close the program that has the port open, or name another port");

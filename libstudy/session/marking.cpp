@@ -63,13 +63,13 @@ void Marking::onset(const PresentTimes& times) const {
 
 MarkedParticipant::MarkedParticipant(Participant& participant, Marking& marking)
     : participant_(participant), marking_(marking) {
-  participant_.tell_shown([this] {
+  participant_.when_shown([this] {
     shown_ = true;
     marking_.mark(MarkerKind::QuestionShown);
   });
 }
 
-MarkedParticipant::~MarkedParticipant() { participant_.tell_shown({}); }
+MarkedParticipant::~MarkedParticipant() { participant_.when_shown({}); }
 
 std::vector<TimedAnswer> MarkedParticipant::ask(const Block& block, std::span<const Question> questions,
                                                 const Occasion& occasion, Clock& clock, const Check& check) {

@@ -106,7 +106,7 @@ class Participant {
 
   /// Sets the function that ask() calls once its page is on the display. Participants without pages never
   /// call it.
-  void tell_shown(std::function<void()> shown) { shown_ = std::move(shown); }
+  void when_shown(std::function<void()> shown) { shown_ = std::move(shown); }
 
  protected:
   void page_is_shown() const {
