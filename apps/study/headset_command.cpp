@@ -58,6 +58,7 @@ void print_offer(const study::HeadsetOffer& offer) {
   row("blend", offer.opaque ? "opaque" : "the world shows through the picture");
   row("head", offer.position ? "rotation and position are tracked" : "only rotation is tracked");
   row("gaze", offer.eye_gaze ? "eye tracker" : "none");
+  row("worn", offer.user_presence ? "reported by the runtime" : "not reported, except by its states");
   row("times", offer.time_converts ? "on the system's clock: evidence grade C"
                                    : "not on the system's clock: evidence grade D");
   if (offer.session) row("formats", listed(offer.session->formats, study::gl_format_name));
@@ -80,10 +81,15 @@ void print_exact_settings(const std::vector<study::CheckedSetting>& settings,
 }
 
 base::Json offer_json(const study::HeadsetOffer& offer) {
-  base::Json out{{"runtime", offer.runtime},      {"runtime_version", offer.runtime_version},
-                 {"headset", offer.headset},      {"eyes", base::Json::array()},
-                 {"opaque", offer.opaque},        {"position", offer.position},
-                 {"eye_gaze", offer.eye_gaze},    {"time_converts", offer.time_converts},
+  base::Json out{{"runtime", offer.runtime},
+                 {"runtime_version", offer.runtime_version},
+                 {"headset", offer.headset},
+                 {"eyes", base::Json::array()},
+                 {"opaque", offer.opaque},
+                 {"position", offer.position},
+                 {"eye_gaze", offer.eye_gaze},
+                 {"user_presence", offer.user_presence},
+                 {"time_converts", offer.time_converts},
                  {"extensions", offer.extensions}};
   for (const study::EyePicture& eye : offer.eyes)
     out["eyes"].push_back({{"width_px", eye.width}, {"height_px", eye.height}});

@@ -175,6 +175,8 @@ class Show {
     if (event.kind == Kind::Refresh)
       report_.notes.push_back(
           fmt::format("refresh went from {:.4g} to {:.4g} Hz", event.from_hz, event.to_hz));
+    if (event.kind == Kind::Presence)
+      report_.notes.emplace_back(event.worn ? "the headset was put on" : "the headset was taken off");
     if (event.kind == Kind::Recentred) report_.notes.emplace_back("the world was recentred");
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
     if (event.kind == Kind::EventsLost) report_.notes.emplace_back("the runtime lost events");

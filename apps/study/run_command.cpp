@@ -300,6 +300,9 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--answer", command->run.answer,
                  "How a person answers in a headset, separated by commas: ray (point with the hand), stick, "
                  "dwell (look at it for a second), keyboard (of this terminal); default: ray,stick,keyboard");
+  sub.add_flag(
+      "--ignore-presence", command->run.ignore_presence,
+      "Do not ask the headset's software whether the headset is worn, because its reports are wrong");
   sub.add_option("--gaze", command->run.gaze,
                  "Where the participant is assumed to look: the middle of the picture, the mouse, the head's "
                  "direction, the headset's eye tracker (recorded if gaze_kept is answered with yes), or not "

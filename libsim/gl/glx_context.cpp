@@ -130,8 +130,14 @@ struct GlxState final : public GlContext::State {
   }
 
   void choose_config() {
-    const int wanted[] = {
-        GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT, GLX_X_RENDERABLE, True, 0};
+    // Windows too, because OpenXR runtimes need a visual, which a configuration for pbuffers alone may lack.
+    const int wanted[] = {GLX_DRAWABLE_TYPE,
+                          GLX_PBUFFER_BIT | GLX_WINDOW_BIT,
+                          GLX_RENDER_TYPE,
+                          GLX_RGBA_BIT,
+                          GLX_X_RENDERABLE,
+                          True,
+                          0};
     int count = 0;
     const int screen = DefaultScreen(display.get());
     GLXFBConfig* all = glXChooseFBConfig(display.get(), screen, wanted, &count);

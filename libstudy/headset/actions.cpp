@@ -1,6 +1,7 @@
 #include "libstudy/headset/actions.hpp"
 
 #include <cstring>
+#include <string_view>
 
 #include "stats/base/error.hpp"
 
@@ -63,7 +64,36 @@ bool suggest_profile(const SessionHandle& session, const std::string& profile,
   return true;
 }
 
+/// A kind of controller. Parts are paths below a hand; empty: it has no such part.
+struct Controller {
+  const char *profile, *select, *menu, *stick;
+  const char* extension = nullptr;  ///< that adds the profile; null: every runtime knows the profile
+};
+
+constexpr const char *trigger = "/input/trigger/value", *thumbstick = "/input/thumbstick",
+                     *menu_button = "/input/menu/click";
+// Every runtime supports the simple controller, which has no stick. A pinch of thumb and finger is the select
+// button of a tracked hand, which has no menu button: each page has a button to stop.
+constexpr Controller controllers[] = {
+    {"khr/simple_controller", "/input/select/click", menu_button, ""},
+    {"oculus/touch_controller", trigger, "", thumbstick},
+    {"valve/index_controller", trigger, "/input/b/click", thumbstick},
+    {"microsoft/motion_controller", trigger, menu_button, thumbstick},
+    {"htc/vive_controller", "/input/trigger/click", menu_button, "/input/trackpad"},
+    {"htc/vive_focus3_controller", trigger, "", thumbstick, "XR_HTC_vive_focus3_controller_interaction"},
+    {"bytedance/pico_neo3_controller", trigger, "", thumbstick, "XR_BD_controller_interaction"},
+    {"bytedance/pico4_controller", trigger, "", thumbstick, "XR_BD_controller_interaction"},
+    {"ext/hand_interaction_ext", "/input/pinch_ext/value", "", "", "XR_EXT_hand_interaction"},
+};
+
 }  // namespace
+
+std::vector<std::string> controller_extensions() {
+  std::vector<std::string> out;
+  for (const Controller& one : controllers)
+    if (one.extension && (out.empty() || out.back() != one.extension)) out.emplace_back(one.extension);
+  return out;
+}
 
 Actions::Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze)
     : session_(session), clock_(clock) {
@@ -97,30 +127,23 @@ void Actions::make_actions(bool eye_gaze) {
 }
 
 void Actions::suggest(bool eye_gaze) const {
-  struct Device {
-    std::string profile, select, menu, stick;
-  };
-  // Every runtime supports the simple controller, which has no stick.
-  for (const Device& device : std::vector<Device>{
-           {"khr/simple_controller", "/input/select/click", "/input/menu/click", ""},
-           {"oculus/touch_controller", "/input/trigger/value", "", "/input/thumbstick"},
-           {"valve/index_controller", "/input/trigger/value", "/input/b/click", "/input/thumbstick"},
-           {"microsoft/motion_controller", "/input/trigger/value", "/input/menu/click", "/input/thumbstick"},
-           {"htc/vive_controller", "/input/trigger/click", "/input/menu/click", "/input/trackpad"}}) {
+  for (const Controller& one : controllers) {
+    if (one.extension && !session_.xr().has(one.extension)) continue;
+    const bool hand = std::string_view(one.stick).empty() && one.extension;
     std::vector<Binding> bindings;
-    for (const std::string hand : {"/user/hand/left", "/user/hand/right"}) {
-      bindings.push_back({select_, hand + device.select});
-      bindings.push_back({aim_, hand + "/input/aim/pose"});
-      if (!device.menu.empty()) bindings.push_back({menu_, hand + device.menu});
-      if (!device.stick.empty()) bindings.push_back({stick_, hand + device.stick});
+    for (const std::string side : {"/user/hand/left", "/user/hand/right"}) {
+      bindings.push_back({select_, side + one.select});
+      bindings.push_back({aim_, side + "/input/aim/pose"});
+      if (*one.menu) bindings.push_back({menu_, side + one.menu});
+      if (*one.stick) bindings.push_back({stick_, side + one.stick});
     }
-    if (device.menu.empty()) {
-      // The Touch controllers have no menu button with one name on both hands. The runtime may reserve the
-      // menu button of the left one.
+    if (!*one.menu && !hand) {
+      // These controllers have no menu button with one name on both hands. The runtime may reserve the menu
+      // button of the left one.
       bindings.push_back({menu_, "/user/hand/left/input/y/click"});
       bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }
-    suggest_profile(session_, "/interaction_profiles/" + device.profile, bindings);
+    suggest_profile(session_, std::string("/interaction_profiles/") + one.profile, bindings);
   }
   if (eye_gaze && !suggest_profile(session_, "/interaction_profiles/ext/eye_gaze_interaction",
                                    {{gaze_, "/user/eyes_ext/input/gaze_ext/pose"}})) {

@@ -1,7 +1,9 @@
 #pragma once
 /// Reads gaze, buttons and pointing (HeadsetInput) through OpenXR's actions.
 
+#include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "libstudy/headset/headset_session.hpp"
@@ -9,6 +11,9 @@
 #include "libstudy/headset/session_handle.hpp"
 
 namespace study {
+
+/// Extensions that kinds of controllers need. They are enabled where the runtime offers them.
+std::vector<std::string> controller_extensions();
 
 /// OpenXR's actions of one session. The constructor makes the actions, suggests their bindings, attaches them
 /// to the session and makes the spaces of their poses. The specification requires suggestions before the

@@ -101,6 +101,7 @@ void FrameLoop::make_anew() {
     running_ = false;
     facts_.state = HeadsetState::LossPending;
     facts_.rate = {};
+    facts_.worn = true;
     facts_.last.runtime_time = facts_.last.index = 0;  // the next session counts from 0
     ++facts_.world;
     moves_ns_.clear();
@@ -171,6 +172,7 @@ bool FrameLoop::poll() {
     // The lost events may include a move of the world's origin, so EventsLost counts as a move. Its at_ns is
     // -1, so this move takes effect at the next slot.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
+    if (event.kind == Kind::Presence) facts_.worn = event.worn;
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
   facts_.state = session_->state();
@@ -225,6 +227,7 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
     out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
     if (out.picture) record.shown = shown_from_;
     record.world = facts_.world;
+    record.input.focused &= facts_.worn;  // input while the headset is off is accidental
     if (records_.size() >= most_records)
       records_.erase(records_.begin(), records_.begin() + most_records / 2);
     records_.push_back(record);

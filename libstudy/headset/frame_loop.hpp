@@ -50,7 +50,8 @@ struct LoopFacts {
   /// predicted times of this session was positive and within a tenth of a period of a whole number of
   /// periods. Steps during a change of the refresh rate do not count once the change is detected.
   bool trusted = false;
-  int world = 0;  ///< changes whenever the poses' origin may have moved; as HeadsetRecord::world
+  int world = 0;     ///< changes whenever the poses' origin may have moved; as HeadsetRecord::world
+  bool worn = true;  ///< false: the runtime reported that nobody wears the headset
   HeadsetSlot last;
   EyeViews views;  ///< predicted poses of the eyes in the last slot
 };

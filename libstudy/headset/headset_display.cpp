@@ -40,7 +40,7 @@ HeadsetChoice with_rate(HeadsetChoice choice, const HeadsetRules& rules) {
   return choice;
 }
 
-/// The cause of a cut if the session's state is not Focused.
+/// The cause of a cut if the session's state is not Focused, or if nobody wears the headset.
 CutCause cause_of(HeadsetState state) {
   if (state == HeadsetState::LossPending) return CutCause::SessionLost;
   return state == HeadsetState::Visible ? CutCause::Focus : CutCause::TakenOff;
@@ -114,6 +114,11 @@ std::string HeadsetDisplay::description() const {
   return session().description + ", " + sim::gl_description();
 }
 
+bool HeadsetDisplay::focused() const {
+  const LoopFacts now = facts();
+  return now.state == HeadsetState::Focused && now.worn && !new_session_;
+}
+
 TimingGrade HeadsetDisplay::grade() const {
   return facts().trusted ? TimingGrade::Compositor : TimingGrade::CpuSubmit;
 }
@@ -153,6 +158,7 @@ void HeadsetDisplay::poll_requests() {
       note_cut(spoilt_, CutCause::Rate);
     }
     if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
+    if (event.kind == Kind::Presence && !event.worn && playing_) note_cut(spoilt_, CutCause::TakenOff);
   }
   const auto unseen = loop_.take_unseen();
   if (unseen && playing_) note_cut(spoilt_, *unseen);

@@ -78,7 +78,7 @@ class HeadsetDisplay final : public Display {
   void look_away() { loop_.look_away(); }
 
   /// True if the participant sees pictures and can give input.
-  bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }
+  bool focused() const;
   /// The cause noted since the last call for which the showing must be cut; none: no cause. Causes: the
   /// session or its focus was lost, the headset was taken off, a picture was not drawn, the poses of the eyes
   /// were unknown, the world's origin moved, or the refresh rate changed.

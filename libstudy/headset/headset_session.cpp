@@ -20,6 +20,8 @@ constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
 /// Relative difference up to which a measured rate counts as the rate that an event reported.
 constexpr double rate_tolerance = 0.04;
+/// Largest number of successive slots without a valid predicted time before the session ends with an error.
+constexpr int most_untimed = 30;
 
 HeadsetSystem read_opaque_system(const XrConnection& xr) {
   HeadsetSystem system = read_system(xr);
@@ -49,7 +51,7 @@ const char* name_of(HeadsetState state) {
 struct HeadsetSession::Parts {
   Parts(const sim::GlContext& gl, const HeadsetChoice& choice)
       : patience(static_cast<std::int64_t>(choice.patience_s * 1e9)),
-        xr(connect_to_headset(choice.eye_gaze)),
+        xr(connect_to_headset(choice.eye_gaze, choice.user_presence)),
         system(read_opaque_system(xr)),
         session(xr, system.id, gl),
         clock(xr, choice.earliest_ns),
@@ -77,9 +79,13 @@ struct HeadsetSession::Parts {
   double reported_hz = 0;                ///< rate of the last event; 0: no event came
   std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event reported
   std::int64_t next_index = 0;
+  XrTime last_time = 0;          ///< predicted time of the last slot; 0: no slot yet
+  std::int64_t last_period = 0;  ///< period of the last slot, ns
+  int untimed = 0;               ///< slots in a row without a valid predicted time
   WatchedThread watched;
 
   XrFrameState wait_frame();
+  XrTime time_for_untimed();
   EyeViews locate(std::int64_t runtime_time, const Space& space) const;
   XrCompositionLayerProjectionView layer_view(const HeadsetEye& eye, const Swapchain& swapchain) const;
 };
@@ -110,6 +116,14 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
   }
   check_xr(answer->result, "xrWaitFrame");
   return answer->frame;
+}
+
+/// A time for a slot for which the runtime predicted none: a period after the last slot. base::Error if there
+/// was no slot before, or after many of these in a row.
+XrTime HeadsetSession::Parts::time_for_untimed() {
+  if (last_time > 0 && last_period > 0 && ++untimed <= most_untimed) return last_time + last_period;
+  throw base::Error("headset", "the runtime predicts no valid times for its frames",
+                    "restart the headset's software; vip-study resume continues a session");
 }
 
 XrCompositionLayerProjectionView HeadsetSession::Parts::layer_view(const HeadsetEye& eye,
@@ -185,9 +199,15 @@ std::vector<HeadsetEvent> HeadsetSession::poll() {
 
 HeadsetSlot HeadsetSession::wait() {
   Parts& parts = *parts_;
-  const XrFrameState frame = parts.wait_frame();
+  XrFrameState frame = parts.wait_frame();
+  const bool timed = frame.predictedDisplayTime > 0;
+  if (timed) parts.untimed = 0;
+  if (!timed) frame.predictedDisplayTime = parts.time_for_untimed();
   HeadsetSlot slot{parts.next_index++, parts.clock.to_ns(frame.predictedDisplayTime),
                    frame.predictedDisplayPeriod, frame.shouldRender == XR_TRUE, frame.predictedDisplayTime};
+  parts.last_time = slot.runtime_time;
+  parts.last_period = slot.period_ns;
+  if (!timed) return slot;  // the meter counts it as a slot that was left out
   const auto change = parts.meter.add(slot.predicted_ns);
   if (change && std::abs(change->to_hz - parts.reported_hz) > rate_tolerance * change->to_hz) {
     parts.measured = {.kind = HeadsetEvent::Kind::Refresh,

@@ -38,6 +38,7 @@ struct HeadsetEvent {
     RuntimeEnds,  ///< the OpenXR runtime shuts down at `at_ns`
     Refresh,      ///< the refresh rate changed from `from_hz` to `to_hz`
     Recentred,    ///< the world's origin moves at `at_ns`
+    Presence,     ///< the headset was put on (`worn`) or taken off
     EventsLost,   ///< some events were dropped
     Lost,         ///< the session is gone; no slots come until MadeAnew
     MadeAnew,     ///< a new session replaces a lost one
@@ -46,6 +47,7 @@ struct HeadsetEvent {
   HeadsetState state = HeadsetState::Unknown;
   double from_hz = 0, to_hz = 0;
   std::int64_t at_ns = -1;  ///< time on the session's clock; -1: not reported
+  bool worn = true;         ///< somebody wears the headset
 };
 
 /// The gaze ray of both eyes together. It starts at ray.place_m and has the direction direction_of(ray).
@@ -74,7 +76,9 @@ struct HeadsetInput {
 };
 
 struct HeadsetChoice {
-  bool eye_gaze = false;   ///< requests eye tracking; needs the participant's consent
+  bool eye_gaze = false;  ///< requests eye tracking; needs the participant's consent
+  /// Requests reports of whether somebody wears the headset (XR_EXT_user_presence), where they are offered.
+  bool user_presence = true;
   double patience_s = 10;  ///< longest wait for a frame, an image or a new session, s; then base::Error
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< refresh rate to request, one that the runtime lists

@@ -56,7 +56,7 @@ void Lifecycle::enter(XrSessionState state, std::vector<HeadsetEvent>& out) {
 
 void Lifecycle::take(const XrEventDataBuffer& event, std::vector<HeadsetEvent>& out) {
   using Kind = HeadsetEvent::Kind;
-  switch (event.type) {
+  switch (static_cast<int>(event.type)) {
     case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED: {
       const auto& changed = as<XrEventDataSessionStateChanged>(event);
       if (changed.session == session_.get()) enter(changed.state, out);
@@ -77,6 +77,12 @@ void Lifecycle::take(const XrEventDataBuffer& event, std::vector<HeadsetEvent>& 
       out.push_back({.kind = Kind::Refresh,
                      .from_hz = static_cast<double>(changed.fromDisplayRefreshRate),
                      .to_hz = static_cast<double>(changed.toDisplayRefreshRate)});
+      break;
+    }
+    case XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT: {
+      const auto& changed = as<XrEventDataUserPresenceChangedEXT>(event);
+      if (changed.session == session_.get())
+        out.push_back({.kind = Kind::Presence, .worn = changed.isUserPresent == XR_TRUE});
       break;
     }
     case XR_TYPE_EVENT_DATA_EVENTS_LOST:

@@ -47,6 +47,7 @@ HeadsetOffer read_headset_offer() {
   out.headset = system.name;
   out.position = system.position;
   out.eye_gaze = system.eye_gaze;
+  out.user_presence = system.user_presence;
   out.opaque = system.opaque;
   for (const auto& view : system.views)
     out.eyes.push_back({view.recommendedImageRectWidth, view.recommendedImageRectHeight});

@@ -22,6 +22,7 @@ struct HeadsetOffer {
   bool opaque = false;                  ///< the picture can hide the real world
   bool position = false;                ///< the head's position is tracked, not only its direction
   bool eye_gaze = false;                ///< an eye tracker is available (XR_EXT_eye_gaze_interaction)
+  bool user_presence = false;           ///< the runtime reports whether somebody wears the headset
   bool time_converts = false;           ///< the runtime's times can be converted to the system's clock
   /// Properties that only a session reports. None if no OpenGL context for a session could be made;
   /// `no_session` gives the reason.

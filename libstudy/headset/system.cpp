@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
+#include "libstudy/headset/actions.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -36,11 +38,16 @@ void read_properties(const XrConnection& xr, HeadsetSystem& out) {
   found.type = XR_TYPE_SYSTEM_PROPERTIES;
   const bool asks_gaze = xr.has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
   if (asks_gaze) found.next = &gaze;
+  XrSystemUserPresencePropertiesEXT presence{};
+  presence.type = XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT;
+  const bool asks_presence = xr.has(XR_EXT_USER_PRESENCE_EXTENSION_NAME);
+  if (asks_presence) presence.next = std::exchange(found.next, &presence);
   check_xr(xr.function<PFN_xrGetSystemProperties>("xrGetSystemProperties")(xr.instance(), out.id, &found),
            "xrGetSystemProperties");
   out.name = found.systemName;
   out.position = found.trackingProperties.positionTracking;
   out.eye_gaze = asks_gaze && gaze.supportsEyeGazeInteraction;
+  out.user_presence = asks_presence && presence.supportsUserPresence;
 }
 
 void read_views(const XrConnection& xr, HeadsetSystem& out) {
@@ -78,22 +85,33 @@ sim::GlContext make_headset_context() {
   const auto offered = offered_extensions();
   const bool egl =
       std::find(offered.begin(), offered.end(), XR_MNDX_EGL_ENABLE_EXTENSION_NAME) != offered.end();
-  if (egl) return sim::GlContext::make_headless();
+  const char* chosen = std::getenv("VIP_OPENXR_GRAPHICS");
+  const std::string choice = chosen ? chosen : "";
+  if (!choice.empty() && choice != "egl" && choice != "xlib")
+    throw base::Error("VIP_OPENXR_GRAPHICS", "'" + choice + "' is not known",
+                      "set it to egl or xlib, or unset it");
+  if (choice == "egl" && !egl)
+    throw base::Error("OpenXR", "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
+                      "unset VIP_OPENXR_GRAPHICS");
+  if (egl && choice != "xlib") return sim::GlContext::make_headless();
   const char* display = std::getenv("DISPLAY");
   if (!display || !*display) {
-    throw base::Error("OpenXR",
-                      "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME
-                      ", and there is no X display",
+    const std::string why = egl ? std::string("VIP_OPENXR_GRAPHICS asks for Xlib")
+                                : "the runtime does not offer " XR_MNDX_EGL_ENABLE_EXTENSION_NAME;
+    throw base::Error("OpenXR", why + ", and there is no X display",
                       "start the program on a desktop, or set DISPLAY");
   }
   return sim::GlContext::make_on_x();
 }
 
-XrConnection connect_to_headset(bool eye_gaze) {
+XrConnection connect_to_headset(bool eye_gaze, bool user_presence) {
   std::vector<std::string> wanted{XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
                                   XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME,
                                   XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME};
+  const auto controllers = controller_extensions();
+  wanted.insert(wanted.end(), controllers.begin(), controllers.end());
   if (eye_gaze) wanted.emplace_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+  if (user_presence) wanted.emplace_back(XR_EXT_USER_PRESENCE_EXTENSION_NAME);
   return {{XR_KHR_OPENGL_ENABLE_EXTENSION_NAME}, wanted};
 }
 

@@ -67,6 +67,7 @@ std::string format_run_options(const RunOptions& options) {
                   {"backend", options.backend},
                   {"answer", options.answer},
                   {"gaze", options.gaze},
+                  {"ignore_presence", options.ignore_presence},
                   {"accept_slow", options.accept_slow},
                   {"station", options.station},
                   {"screen_width_mm", options.screen_width_mm},
@@ -94,6 +95,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.backend = json.at("backend");
     options.answer = json.value("answer", "");
     options.gaze = json.at("gaze");
+    options.ignore_presence = json.value("ignore_presence", false);
     options.accept_slow = json.value("accept_slow", false);
     options.station = json.at("station");
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));

@@ -74,10 +74,12 @@ void refuse_pictures(const SessionBakes& bakes, const Protocol& protocol) {
   }
 }
 
-/// Requests the eye tracker for --gaze tracked; the tracker is not read before a participant allows
-/// recording. Adds a page if none is chosen, because the tracker's validation targets are drawn on a page.
-HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
+/// Applies the options of the run. Requests the eye tracker for --gaze tracked; the tracker is not read
+/// before a participant allows recording. Adds a page if none is chosen, because the tracker's validation
+/// targets are drawn on a page.
+HeadsetChoice with_options(HeadsetChoice choice, const RunOptions& options) {
   constexpr int target_px = 128;
+  choice.user_presence = !options.ignore_presence;
   if (options.gaze != "tracked") return choice;
   choice.eye_gaze = true;
   if (choice.page_width_px == 0) choice.page_width_px = choice.page_height_px = target_px;
@@ -106,7 +108,7 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
   const bool person = options.observer.empty();
   const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
   const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
-  const HeadsetChoice choice = with_gaze(person ? choice_for_person(ways) : HeadsetChoice{}, options);
+  const HeadsetChoice choice = with_options(person ? choice_for_person(ways) : HeadsetChoice{}, options);
   auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   record_headset(options, *headset, setup, viewing);
   setup.clock = std::make_unique<HeadsetClock>(*headset);

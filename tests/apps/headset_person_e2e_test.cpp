@@ -332,6 +332,16 @@ TEST_F(HeadsetPersonE2e, WhatAPersonCannotAnswerWithIsRefusedBeforeAnythingIsWri
   const auto console = session(by_ray, pilot("[10]"), {"--answer", "keyboard", "--console"});
   EXPECT_THAT(console.err, HasSubstr("the console uses the terminal's keys"));
   EXPECT_FALSE(fs::exists(database_));
+  for (const char* way : {"ray", "stick", "ray,stick,keyboard"}) {
+    const auto handless = session("controller=none", pilot("[10]"), {"--answer", way});
+    EXPECT_EQ(handless.exit_code, 1);
+    EXPECT_THAT(handless.err, HasSubstr("no controller and no tracked hand is active in the headset"));
+    EXPECT_THAT(handless.err, HasSubstr("or use --answer dwell"));
+    EXPECT_FALSE(fs::exists(database_));
+  }
+  const auto keyless = session(by_ray, pilot("[10]"), {"--answer", "keyboard"});
+  EXPECT_THAT(keyless.err, HasSubstr("--answer: the program was not started in a terminal\n  mend: "));
+  EXPECT_FALSE(fs::exists(database_));
   const auto observer = session(by_ray, pilot("[10]"), {"--answer", "ray", "--observer", "random"});
   EXPECT_THAT(observer.err, HasSubstr("is for a person in a headset"));
 }

@@ -158,13 +158,25 @@ TEST_F(HeadsetSessionE2e, TheWholePilotRunsAndUnreachableSettingsAreFlagged) {
 
 TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   const std::string protocol = pilot("[10]", "[0]");
-  for (const char* trouble : {"at=400:focus/0,460:focus/1", "at=150:focus/0,900:focus/1", "at=400:off/1",
-                              "at=400:recentre/20", "at=400:rate/120"}) {
+  for (const char* trouble :
+       {"at=400:focus/0,460:focus/1", "at=150:focus/0,900:focus/1", "at=400:off/1", "at=400:recentre/20",
+        "at=400:rate/120", "presence=1;at=400:worn/0,460:worn/1"}) {
     next_database();
     const auto ended = session(trouble, protocol, "2");
     ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("showings: 2, 1 of them count, 1 cut short; timing: 1 pass")) << trouble;
   }
+}
+
+TEST_F(HeadsetSessionE2e, ReportsThatNobodyWearsTheHeadsetCutTheTrialUnlessTheyAreIgnored) {
+  const std::string off = "presence=1;at=400:worn/0,700:worn/1";
+  const auto ended = session(off, pilot("[10]", "[0]"), "2");
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(notes(), HasSubstr("the headset was taken off"));
+  next_database();
+  const auto ignored = session(off, pilot("[10]", "[0]"), "2", {"--ignore-presence"});
+  ASSERT_EQ(ignored.exit_code, 0) << ignored.err;
+  EXPECT_THAT(ignored.out, HasSubstr("showings: 1, 1 of them count, 0 cut short"));
 }
 
 /// The rate falls from 90 to 72 Hz, which shows 10 frames/s only approximately. Intervals that were computed

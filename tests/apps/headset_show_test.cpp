@@ -47,6 +47,21 @@ TEST_F(HeadsetShowE2e, TheRateIsMeasuredAndNeverTheFirstPeriod) {
               {"rate        90.00 Hz", "dropped     4 slots; 1 predicted times repeated"});
 }
 
+TEST_F(HeadsetShowE2e, ASlotWithoutAValidTimeIsLeftOutAndManyEndTheProgram) {
+  expect_says("at=30:untimed/1", {"dropped     1 slots; 0 predicted times repeated, 0 off the grid\n"});
+  const auto ended = show("at=10:untimed/40");
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("the runtime predicts no valid times for its frames\n  mend: "));
+}
+
+TEST_F(HeadsetShowE2e, WhetherTheHeadsetIsWornIsReportedWhereTheRuntimeKnows) {
+  expect_says("presence=1;at=20:worn/0,30:worn/1",
+              {"worn        reported by the runtime\n", "note        the headset was taken off\n",
+               "note        the headset was put on\n"});
+  for (const char* profile : {"at=20:worn/0", "presence=1;without=XR_EXT_user_presence;at=20:worn/0"})
+    expect_says(profile, {"worn        not reported, except by its states\n"});
+}
+
 TEST_F(HeadsetShowE2e, AChangeOfTheRateIsTold) {
   seconds_ = "1";
   for (const char* profile : {"at=28:rate/72", "at=28:rate/72;rates=90"})
@@ -94,8 +109,14 @@ TEST_F(HeadsetShowE2e, HandsAnswerWhileTheSessionIsFocused) {
   const std::string presses =
       "at=10:select/1,14:select/0,18:select/1,22:select/0,24:thumb_x/0.9,28:thumb_x/0";
   expect_says(presses, {"hands       pressed 2 times, stick pushed 0 times\n"});
-  expect_says("controller=oculus/touch_controller;" + presses,
-              {"hands       pressed 2 times, stick pushed 1 times\n"});
+  for (const char* controller : {"oculus/touch_controller", "htc/vive_focus3_controller",
+                                 "bytedance/pico4_controller", "bytedance/pico_neo3_controller"})
+    expect_says(std::string("controller=") + controller + ";" + presses,
+                {"hands       pressed 2 times, stick pushed 1 times\n"});
+  expect_says("controller=ext/hand_interaction_ext;" + presses,
+              {"hands       pressed 2 times, stick pushed 0 times\n"});
+  expect_says("controller=bytedance/pico4_controller;without=XR_BD_controller_interaction;" + presses,
+              {"hands       pressed 0 times, stick pushed 0 times\n"});
   expect_says("controller=none;" + presses, {"hands       pressed 0 times, stick pushed 0 times\n"});
   expect_says("at=8:focus/0,10:select/1,14:select/0,16:focus/1", {"hands       pressed 0 times"});
 }

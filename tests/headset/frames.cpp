@@ -83,7 +83,8 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
   frame.should_render = seen && all.knobs.at("render") != 0;
   found.waiting = frame;
   found.waited = true;
-  state->predictedDisplayTime = frame.predicted;
+  state->predictedDisplayTime = all.untimed > 0 ? -frame.predicted : frame.predicted;
+  if (all.untimed > 0) --all.untimed;
   state->predictedDisplayPeriod =
       period() * (static_cast<double>(found.frames) < all.knobs.at("wrong_periods") ? 3 : 1);
   state->shouldRender = frame.should_render;

@@ -18,7 +18,8 @@ const Action& need_action(const Session& session, XrAction handle) {
 Input::Value value_of(const std::string& source) {
   const auto knob = [](const char* name) { return runtime().knobs.at(name); };
   const auto ends = [&](const char* part) { return source.ends_with(part); };
-  if (ends("/select/click") || ends("/trigger/value") || ends("/trigger") || ends("/a/click"))
+  if (ends("/select/click") || ends("/trigger/value") || ends("/trigger") || ends("/a/click") ||
+      ends("/pinch_ext/value"))
     return {presses_page() ? 1 : knob("select"), 0};
   if (ends("/menu/click") || ends("/b/click")) return {knob("menu"), 0};
   if (ends("/thumbstick")) return {knob("thumb_x"), knob("thumb_y")};

@@ -119,6 +119,9 @@ XrResult get_system_properties(XrInstance instance, XrSystemId system, XrSystemP
   if (auto* gaze = find_chained<XrSystemEyeGazeInteractionPropertiesEXT>(
           out->next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT))
     gaze->supportsEyeGazeInteraction = profile.gaze;
+  if (auto* presence = find_chained<XrSystemUserPresencePropertiesEXT>(
+          out->next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT))
+    presence->supportsUserPresence = profile.presence;
   return XR_SUCCESS;
 }
 

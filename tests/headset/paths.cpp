@@ -40,6 +40,22 @@ const std::map<std::string, std::vector<std::string>> controllers{
       "input/squeeze/value", "input/trigger/value", "input/trigger", "input/thumbstick", "input/thumbstick/x",
       "input/thumbstick/y", "input/thumbstick/click", "input/grip/pose", "input/aim/pose", "output/haptic"}},
 };
+/// Parts of a controller with a trigger, a thumbstick, and other buttons on each hand.
+const std::vector<std::string> two_handed{"input/x/click",       "input/y/click",    "input/a/click",
+                                          "input/b/click",       "input/menu/click", "input/trigger/value",
+                                          "input/squeeze/value", "input/thumbstick", "input/grip/pose",
+                                          "input/aim/pose",      "output/haptic"};
+/// Profiles that an extension adds: the extension, and the parts.
+const std::map<std::string, std::pair<std::string, std::vector<std::string>>> extension_controllers{
+    {"/interaction_profiles/htc/vive_focus3_controller",
+     {"XR_HTC_vive_focus3_controller_interaction", two_handed}},
+    {"/interaction_profiles/bytedance/pico_neo3_controller", {"XR_BD_controller_interaction", two_handed}},
+    {"/interaction_profiles/bytedance/pico4_controller", {"XR_BD_controller_interaction", two_handed}},
+    {"/interaction_profiles/ext/hand_interaction_ext",
+     {"XR_EXT_hand_interaction",
+      {"input/pinch_ext/value", "input/pinch_ext/pose", "input/aim_activate_ext/value",
+       "input/grasp_ext/value", "input/aim/pose", "input/grip/pose"}}},
+};
 /// Profiles of the specification whose parts are not checked.
 const std::set<std::string> other_controllers{
     "/interaction_profiles/google/daydream_controller",  "/interaction_profiles/htc/vive_controller",
@@ -70,8 +86,13 @@ void need_source(const std::string& profile, const std::string& source) {
   need(!part.empty(), unsupported, source + " is no part of " + profile);
   if (other_controllers.contains(profile)) return;
   const auto found = controllers.find(profile);
-  need(found != controllers.end(), unsupported, profile + " is no interaction profile");
-  const auto& parts = found->second;
+  const auto added = extension_controllers.find(profile);
+  if (added != extension_controllers.end())
+    need(runtime().enabled.contains(added->second.first), unsupported,
+         profile + ", whose extension is not enabled");
+  need(found != controllers.end() || added != extension_controllers.end(), unsupported,
+       profile + " is no interaction profile");
+  const auto& parts = found != controllers.end() ? found->second : added->second.second;
   need(std::find(parts.begin(), parts.end(), part) != parts.end(), unsupported,
        source + " is no part of " + profile);
 }

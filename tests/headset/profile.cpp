@@ -134,6 +134,7 @@ const std::map<std::string, std::function<void(Profile&, Text)>> keys{
     {"dump", [](Profile& p, Text value) { p.dumps = read_numbers<long>(value); }},
     {"at", [](Profile& p, Text value) { p.script = read_script(value); }},
     {"gaze", [](Profile& p, Text value) { p.gaze = yes(value); }},
+    {"presence", [](Profile& p, Text value) { p.presence = yes(value); }},
     {"opaque", [](Profile& p, Text value) { p.opaque = yes(value); }},
     {"stereo", [](Profile& p, Text value) { p.stereo = yes(value); }},
     {"positive", [](Profile& p, Text value) { p.positive = yes(value); }},
@@ -178,9 +179,9 @@ const std::map<std::string, double> knobs{
     {"blink_length", 0.15},
 };
 /// Names of script events that set no value of `knobs`.
-const std::vector<std::string> happenings{"focus",         "shown",  "off",     "lost",       "lost_now",
-                                          "instance_lost", "exit",   "unknown", "recentre",   "rate",
-                                          "drop",          "repeat", "hang",    "events_lost"};
+const std::vector<std::string> happenings{
+    "focus",    "shown", "off",  "lost",   "lost_now", "instance_lost", "exit",    "unknown",
+    "recentre", "rate",  "drop", "repeat", "hang",     "events_lost",   "untimed", "worn"};
 
 void check_script(const Profile& profile) {
   for (const ScriptedEvent& event : profile.script) {
@@ -194,9 +195,16 @@ Profile read_profile() {
   Profile out;
   out.formats = read_formats("srgb_first");
   out.knobs = knobs;
-  out.extensions = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,         XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
-                    XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
-                    XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,   "XR_EXTX_made_up"};
+  out.extensions = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
+                    XR_MNDX_EGL_ENABLE_EXTENSION_NAME,
+                    XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME,
+                    XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
+                    XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
+                    XR_EXT_USER_PRESENCE_EXTENSION_NAME,
+                    "XR_BD_controller_interaction",
+                    "XR_HTC_vive_focus3_controller_interaction",
+                    "XR_EXT_hand_interaction",
+                    "XR_EXTX_made_up"};
   const char* text = std::getenv("VIP_XR_PROFILE");
   for (const std::string& entry : split(text ? text : "", ';')) {
     const std::size_t at = entry.find('=');

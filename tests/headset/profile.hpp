@@ -39,8 +39,9 @@ struct Profile {
   std::vector<long> dumps;                    ///< frames whose images are written to files
   std::map<std::string, double> knobs;        ///< values that the script may change, by name
   std::vector<ScriptedEvent> script;
-  bool gaze = true;    ///< supportsEyeGazeInteraction
-  bool opaque = true;  ///< the opaque blend mode is offered besides the additive one
+  bool gaze = true;       ///< supportsEyeGazeInteraction
+  bool presence = false;  ///< supportsUserPresence
+  bool opaque = true;     ///< the opaque blend mode is offered besides the additive one
   bool stereo = true;
   bool positive = false;     ///< calls that may return a positive success code do so
   bool leave_error = false;  ///< calls that may use GL leave a GL error behind

@@ -32,6 +32,15 @@ void lose_events(double events) {
   queue_event(event, XR_TYPE_EVENT_DATA_EVENTS_LOST);
 }
 
+/// Reports that somebody wears the headset, or that nobody does, if the program asked for it.
+void report_presence(XrSession session, bool worn) {
+  if (!runtime().profile.presence || !runtime().enabled.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME)) return;
+  XrEventDataUserPresenceChangedEXT event{};
+  event.session = session;
+  event.isUserPresent = worn;
+  queue_event(event, XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT);
+}
+
 void play(XrSession session, const ScriptedEvent& event) {
   Runtime& all = runtime();
   const auto& [frame, name, value] = event;
@@ -52,6 +61,8 @@ void play(XrSession session, const ScriptedEvent& event) {
   if (name == "rate") change_rate(static_cast<float>(value));
   if (name == "drop") all.dropped = static_cast<int>(value);
   if (name == "repeat") all.repeats = true;
+  if (name == "untimed") all.untimed = static_cast<int>(value);
+  if (name == "worn") report_presence(session, value != 0);
   if (name == "hang") all.hang_seconds = value;
 }
 

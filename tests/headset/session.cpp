@@ -20,6 +20,7 @@ Graphics read_egl(const XrGraphicsBindingEGLMNDX& binding) {
 Graphics read_xlib(const XrGraphicsBindingOpenGLXlibKHR& binding) {
   need(binding.xDisplay && binding.glxContext, XR_ERROR_GRAPHICS_DEVICE_INVALID,
        "a binding without display or context");
+  need(binding.visualid != 0, XR_ERROR_GRAPHICS_DEVICE_INVALID, "a binding without a visual");
   Graphics out;
   out.x_display = binding.xDisplay;
   out.drawable = binding.glxDrawable;

@@ -145,6 +145,7 @@ struct Runtime {
   XrTime worn_from = 0;                           ///< time until which the headset is off
   int dropped = 0;                                ///< number of slots that the next wait skips
   bool repeats = false;                           ///< the next wait predicts the last time again
+  int untimed = 0;                                ///< next frames whose predicted time is negative
   double hang_seconds = 0;                        ///< duration for which the next wait hangs
   std::vector<LocalTurn> local_turns;             ///< turns of the space LOCAL by recentring
 };

@@ -52,7 +52,8 @@ void XScreen::make_context() {
     throw std::runtime_error("Xvfb: its display " + name_ + " cannot be opened; run the test again");
   binding_.type = XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR;
   binding_.xDisplay = display;
-  const int wanted[] = {GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT, 0};
+  const int wanted[] = {GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT | GLX_WINDOW_BIT, GLX_RENDER_TYPE, GLX_RGBA_BIT,
+                        0};
   int count = 0;
   GLXFBConfig* configs = glXChooseFBConfig(display, DefaultScreen(display), wanted, &count);
   if (!configs || count == 0)

@@ -1,6 +1,7 @@
 #include "libstudy/pages/headset/headset_person.hpp"
 
 #include <imgui.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -22,6 +23,7 @@
 #include "libstudy/pages/headset/hand_keys.hpp"
 #include "libstudy/pages/headset/page_place.hpp"
 #include "libstudy/pages/headset/terminal_keys.hpp"
+#include "stats/base/error.hpp"
 
 namespace study {
 
@@ -94,6 +96,7 @@ class HeadsetSurface final : public PageSurface {
 };
 
 constexpr double fade_s = 0.2;
+constexpr double most_hand_waiting_s = 5;
 constexpr float picture_s = 1.0F / 60;  // s; Dear ImGui needs a frame time, which does not affect the pages
 // The stick hides the pointer until the hand moves the pointer this far, px: about 2 degrees.
 constexpr float moved_px = 60;
@@ -294,6 +297,33 @@ void HeadsetSurface::show_black() {
   pointer_.reset();
 }
 
+/// True if a hand or a controller points, now or within most_hand_waiting_s.
+bool has_hands(HeadsetDisplay& display) {
+  const int slots = static_cast<int>(most_hand_waiting_s * display.refresh_hz());
+  auto records = display.take_records();
+  for (int turned = 0; turned < slots; records = display.next_records()) {
+    for (const HeadsetRecord& record : records) {
+      const auto& aim = record.input.hands.aim;
+      if (aim[0] || aim[1]) return true;
+      ++turned;
+    }
+  }
+  return false;
+}
+
+/// base::Error if the participant has nothing to answer with, because the session would wait for an answer
+/// that cannot come.
+void require_way(HeadsetDisplay& display, const AnswerWays& ways) {
+  if (ways.dwell || (ways.keyboard && isatty(STDIN_FILENO) == 1)) return;
+  const bool hands = ways.ray || ways.stick;
+  if (hands && has_hands(display)) return;
+  const std::string no_hands = hands ? "no controller and no tracked hand is active in the headset" : "";
+  const std::string no_keys = ways.keyboard ? "the program was not started in a terminal" : "";
+  throw base::Error("--answer", no_hands + (hands && ways.keyboard ? ", and " : "") + no_keys,
+                    std::string(hands ? "switch a controller on" : "start it in a terminal") +
+                        ", or use --answer dwell: the participant looks at a button for a second");
+}
+
 /// Owns the surface and its pages. A shared pointer to either of the two keeps the other alive.
 struct HeadsetPages {
   HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol, const Clock& clock)
@@ -314,6 +344,7 @@ HeadsetChoice choice_for_person(const AnswerWays& ways) {
 
 HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol,
                                   const Clock& clock) {
+  require_way(display, ways);
   const auto both = std::make_shared<HeadsetPages>(display, ways, protocol, clock);
   const std::shared_ptr<Pages> pages(both, &both->pages);
   HeadsetPerson person;
