@@ -144,7 +144,8 @@ int next_by_quest(const Procedure& procedure, const std::vector<double>& values,
 }
 
 int next_by_placement(const Protocol& protocol, const std::vector<int>& cells,
-                      const std::vector<TrackStep>& steps) {
+                      const std::vector<TrackStep>& steps, const std::vector<TrackStep>& earlier,
+                      int person) {
   const Procedure& procedure = *protocol.design.procedure;
   std::vector<stats::PlacementSetting> settings;
   for (const int cell : cells) {
@@ -159,9 +160,12 @@ int next_by_placement(const Protocol& protocol, const std::vector<int>& cells,
     prior.level = fitted_level(*question);
   }
   stats::PlacementRules rules;
+  rules.trials = procedure.trials;
   rules.between = procedure.fixed;
   rules.most_of_one = procedure.most_of_one;
   stats::Placement placement(settings, prior, rules);
+  placement.set_person(person);
+  for (const TrackStep& step : earlier) placement.learn(step.place, step.score);
   for (const TrackStep& step : steps) placement.add(step.place, step.score);
   return placement.next();
 }
@@ -195,18 +199,19 @@ std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<i
 }
 
 PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
-                          std::span<const TrackAnswer> answers) {
+                          const TrackAnswers& answers) {
   const Design& design = protocol.design;
   const int placeholder = comparison_of(design, planned.first, planned.second);
   const auto cells = track_cells(design, cell_at(design, placeholder));
-  const auto steps = steps_of(protocol, cells, answers);
+  const auto steps = steps_of(protocol, cells, answers.own);
   const Procedure& procedure = *design.procedure;
   const auto count = static_cast<int>(cells.size());
   int place = 0;
   if (procedure.kind == ProcedureKind::Staircase)
     place = next_by_staircase(procedure, steps, count);
   else if (procedure.kind == ProcedureKind::Ptpe)
-    place = next_by_placement(protocol, cells, steps);
+    place =
+        next_by_placement(protocol, cells, steps, steps_of(protocol, cells, answers.earlier), answers.person);
   else if (static_cast<int>(steps.size()) < procedure.fixed)
     place = spread_evenly(procedure.fixed, count)[steps.size()];
   else

@@ -19,6 +19,14 @@ struct TrackAnswer {
   int score = 0;              ///< answer to Procedure::question
 };
 
+/// The answers from which a procedure chooses the next trial.
+struct TrackAnswers {
+  std::vector<TrackAnswer> own;  ///< all answered trials of the session's stimulus block so far
+  /// For ProcedureKind::Ptpe: those of earlier sessions of the same protocol.
+  std::vector<TrackAnswer> earlier = {};
+  int person = 0;  ///< for ProcedureKind::Ptpe: a number of the session that rises from person to person
+};
+
 /// The trials of one group of cells in random order, with the planned number of trials for each track. group:
 /// the cells that one participant sees, as indices into Design::cells. Each trial has the first cell of its
 /// track as a placeholder, which chosen_trial() replaces before the trial is shown. In a design with pairs,
@@ -27,11 +35,9 @@ struct TrackAnswer {
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 
-/// The trial with the cells that the procedure chooses. `answers`: all answered trials of the session's
-/// stimulus block so far; those of other tracks are ignored. The order of the intervals of a pair stays as
-/// planned.
-PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
-                          std::span<const TrackAnswer> answers);
+/// The trial with the cells that the procedure chooses. Answers in other tracks are ignored. The order of the
+/// intervals of a pair stays as planned.
+PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned, const TrackAnswers& answers);
 
 /// The cell that identifies the track of `cell`: the track's cell, other than the standard of a
 /// design with pairs, with the lowest level of the adaptive factor. Returns `cell` itself if the track has

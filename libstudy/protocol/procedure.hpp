@@ -45,9 +45,9 @@ struct Procedure {
   std::vector<double> lapses{0, 0.02, 0.04};
   /// QuestPlus, Ptpe: a level is chosen at most this often in a track.
   int most_of_one = 1000;
-  /// QuestPlus, Ptpe: number of trials at the start of a track whose level the answers do not choose.
-  /// QuestPlus spreads these trials evenly over the levels. Ptpe uses the standard deviations between the
-  /// smallest and the largest in turn. These trials allow checks of the model.
+  /// QuestPlus: number of trials at the start of a track, spread evenly over the levels. Ptpe: number of
+  /// trials, spread over the session, at the standard deviations between the smallest and the largest in
+  /// turn. These trials allow checks of the model.
   int fixed = 0;
 };
 

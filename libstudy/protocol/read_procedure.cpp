@@ -99,8 +99,7 @@ void read_staircase(const base::TomlTable& table, const Design& design, Procedur
 
 void read_guards(const base::TomlTable& table, std::size_t levels, Procedure& out) {
   // Without trials between the ends, the direct estimate of the PTPE has no fit.
-  const int usual =
-      out.kind == ProcedureKind::Ptpe ? std::min(stats::PlacementRules().between, out.trials) : 0;
+  const int usual = out.kind == ProcedureKind::Ptpe ? stats::usual_between(out.trials) : 0;
   out.fixed = static_cast<int>(table.integer_or("fixed", usual, {0, 500}));
   if (out.fixed > out.trials)
     table.fail("fixed", "= " + std::to_string(out.fixed) + " exceeds trials = " + std::to_string(out.trials),

@@ -37,7 +37,7 @@ exactly.
 |---|---|---|
 | staircase | one step down after `down_after` positive answers in a row, up after `up_after` others (Levitt 1971); with up_ratio a weighted rule (Kaernbach 1991) | axis, positive, start, steps, down_after, up_after, up_ratio, fast_start |
 | quest_plus | the level whose answer is expected to say most about threshold, slope and lapse rate (Watson 2017) | axis, positive, form, guess, lapse, fixed, most_of_one |
-| ptpe | a frame rate near the contour that the ratings so far suggest, above, on and below it in turn, three of four at the smallest standard deviation and one at the largest | fixed, most_of_one |
+| ptpe | a frame rate near the contour that all ratings so far suggest, above, on and below it in turn, three of four at the smallest standard deviation and one at the largest | fixed, most_of_one |
 
 The threshold is a point of the psychometric function, which rises from guess to 1 - lapse: with form
 weibull the level at 63 % (1 - 1/e) of this rise, with normal and logistic the level at half of it. The

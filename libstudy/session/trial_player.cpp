@@ -130,10 +130,16 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
 }
 
 /// Lets the protocol's adaptive procedure choose the cells of a trial from the answers so far. After an
-/// interruption the answers are the same, so the procedure chooses the same cells again.
+/// interruption the answers are the same, so the procedure chooses the same cells again, unless answers of an
+/// earlier session were added or deleted meanwhile.
 void TrialPlayer::choose(OpenUnit& unit) {
   Store& store = run_.parts.store;
-  const auto answers = store.track_answers(run_.session.id, run_.protocol.design.procedure->question);
+  const Procedure& procedure = *run_.protocol.design.procedure;
+  TrackAnswers answers{store.track_answers(run_.session.id, procedure.question)};
+  if (procedure.kind == ProcedureKind::Ptpe) {
+    answers.earlier = store.earlier_answers(run_.session.id, procedure.question);
+    answers.person = static_cast<int>(run_.session.id);
+  }
   const PlannedTrial chosen = chosen_trial(run_.protocol, *unit.trial, answers);
   if (chosen.first != unit.trial->first || chosen.second != unit.trial->second)
     store.choose_cells(run_.session.id, unit.trial_id, chosen.first, chosen.second);

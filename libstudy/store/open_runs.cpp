@@ -275,13 +275,30 @@ void Store::choose_cells(std::int64_t session, std::int64_t trial, int first, st
 }
 
 std::vector<TrackAnswer> Store::track_answers(std::int64_t session, const std::string& question) {
+  return answers_where("t.session_id = ?1", session, question);
+}
+
+std::vector<TrackAnswer> Store::earlier_answers(std::int64_t session, const std::string& question) {
+  return answers_where(
+      "t.session_id IN (SELECT earlier.session_id FROM session earlier JOIN session own "
+      "ON own.protocol_id = earlier.protocol_id AND own.test_data = earlier.test_data "
+      "AND (own.observer IS NULL) = (earlier.observer IS NULL) "
+      "WHERE own.session_id = ?1 AND earlier.session_id < own.session_id)",
+      session, question);
+}
+
+/// Answers of the sessions that `condition` selects with the session's number as ?1.
+std::vector<TrackAnswer> Store::answers_where(const std::string& condition, std::int64_t session,
+                                              const std::string& question) {
   Statement row(
       *database_,
       "SELECT t.first_cell, t.second_cell, r.score FROM trial t JOIN unit u USING (trial_id) JOIN judgement "
       "j "
       "ON j.unit_id = u.unit_id JOIN question q ON q.question_id = j.question_id JOIN response r ON "
-      "r.response_id = j.response_id WHERE t.session_id = ?1 AND u.kind = 'stimulus' AND q.code = ?2 AND "
-      "j.counts AND r.score IS NOT NULL AND u.state = 'done' ORDER BY t.position");
+      "r.response_id = j.response_id WHERE " +
+          condition +
+          " AND u.kind = 'stimulus' AND q.code = ?2 AND "
+          "j.counts AND r.score IS NOT NULL AND u.state = 'done' ORDER BY t.session_id, t.position");
   std::vector<TrackAnswer> out;
   for (row.bind_all(session, question); row.step();) {
     TrackAnswer answer{static_cast<int>(row.integer(0)), {}, static_cast<int>(row.integer(2))};

@@ -209,6 +209,9 @@ class Store {
   /// The answers of a session to a question of its stimulus block, in the order of the trials' positions.
   /// Omits answers to trials that are excluded or not done, and to showings that were set aside.
   std::vector<TrackAnswer> track_answers(std::int64_t session, const std::string& question);
+  /// As track_answers(), of all sessions of the same protocol that were planned before this one, by session
+  /// and position. Test data learn from test data alone, people from people alone.
+  std::vector<TrackAnswer> earlier_answers(std::int64_t session, const std::string& question);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. interval: 0 for the first
   /// or only stimulus, 1 for the second of a pair. gaze_source: the gaze that the fluid uses; none: the
@@ -279,6 +282,9 @@ class Store {
 
  private:
   struct Statements;
+
+  std::vector<TrackAnswer> answers_where(const std::string& condition, std::int64_t session,
+                                         const std::string& question);
 
   /// A Store on a temporary copy of a database that another program has locked. Its commits reach only the
   /// journal; the next settle() of the database inserts their rows there.

@@ -15,9 +15,13 @@ constexpr double largest_b = 0.1;  // s/frame
 
 /// Trials at the ends: whether a trial uses the smallest standard deviation. The contour there is a, and b is
 /// its slope, so that trials at the smallest one determine both.
-constexpr std::array at_smallest{true, true, false, true};
-/// Distances of successive trials from the estimated contour, as exponents of PlacementRules::bracket.
-constexpr std::array end_distances{1, 0, -1}, inner_distances{0, 1, -1};
+constexpr std::array at_smallest{true, false, true, true};
+/// Distances of successive trials of one kind from the estimated contour, as exponents of
+/// PlacementRules::bracket.
+constexpr std::array smallest_distances{1, 0, -1}, inner_distances{0, 1, -1};
+constexpr std::array largest_distances{1, -1};
+/// Place of a trial between the ends within its share of the session, [0, 1).
+constexpr double inner_place = 0.75;
 
 struct PlacementPoint {
   double a = 0, b = 0, slope = 0;
@@ -51,13 +55,49 @@ QuestPlus make_quest(const std::vector<PlacementSetting>& settings, const Placem
   return {static_cast<int>(settings.size()), prior.highest - prior.lowest + 1, even, chance};
 }
 
-/// The standard deviation of trial `trial` among those between the ends: the middle one first, then the
-/// others by their distance from it. `deltas` has at least three.
-double inner_delta(const std::vector<double>& deltas, std::size_t trial) {
+/// Standard deviations between the ends: the middle one first, then the others by their distance from it.
+/// `deltas` is ascending.
+std::vector<double> inner_deltas(const std::vector<double>& deltas) {
+  if (deltas.size() < 3) return {};
   std::vector<double> inner(deltas.begin() + 1, deltas.end() - 1);
   const double middle = inner[(inner.size() - 1) / 2];
   std::ranges::stable_sort(inner, {}, [&](double delta) { return std::abs(delta - middle); });
-  return inner[trial % inner.size()];
+  return inner;
+}
+
+/// Number of trials between the ends among the first `trials` ones of a session. Trial j of them is at
+/// (j + inner_place) trials / between.
+int inner_before(const PlacementRules& rules, int trials) {
+  int count = 0;
+  while (count < rules.between &&
+         static_cast<int>((count + inner_place) * rules.trials / rules.between) < trials)
+    ++count;
+  return count;
+}
+
+/// The standard deviation of a trial, and its distance from the estimated contour as an exponent of
+/// PlacementRules::bracket.
+struct PlacementTurn {
+  double delta = 0;
+  int distance = 0;
+};
+
+PlacementTurn turn_of(const PlacementRules& rules, const std::vector<double>& deltas, int person, int trial) {
+  const auto nth = [](const auto& values, int n) {
+    return values[static_cast<std::size_t>(n) % values.size()];
+  };
+  const auto inner = inner_deltas(deltas);
+  const int before = inner.empty() ? 0 : inner_before(rules, trial);
+  if (!inner.empty() && inner_before(rules, trial + 1) > before) {
+    const int turn = before + person;
+    return {nth(inner, turn), nth(inner_distances, turn + turn / static_cast<int>(inner.size()))};
+  }
+  const int ends = trial - before;
+  const bool smallest = nth(at_smallest, ends);
+  int same = person;  // trials at this end before, shifted by the person's number
+  for (int t = 0; t < ends; ++t) same += nth(at_smallest, t) == smallest;
+  return smallest ? PlacementTurn{deltas.front(), nth(smallest_distances, same)}
+                  : PlacementTurn{deltas.back(), nth(largest_distances, same)};
 }
 
 }  // namespace
@@ -85,15 +125,20 @@ PlacementPrior placement_prior(std::span<const PlacementSetting> settings) {
   return prior;
 }
 
+int usual_between(int trials) { return std::min(trials, std::max(2, (2 * trials + 5) / 10)); }
+
 Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior,
                      const PlacementRules& rules)
     : settings_(std::move(settings)),
       rules_(rules),
       lowest_(prior.lowest),
-      quest_(make_quest(settings_, prior)) {
-  if (!(rules.bracket > 1) || rules.between < 0 || rules.most_of_one < 1)
+      all_(make_quest(settings_, prior)),
+      own_(all_) {
+  if (!(rules.bracket > 1) || rules.trials < 1 || rules.between < 0 || rules.between > rules.trials ||
+      rules.most_of_one < 1)
     throw std::invalid_argument(
-        "Placement: a rule is out of range; set bracket above 1, between from 0 and most_of_one from 1");
+        "Placement: a rule is out of range; set bracket above 1, trials and most_of_one from 1 and between "
+        "from 0 to trials");
   for (const PlacementSetting& one : settings_) deltas_.push_back(one.delta);
   std::ranges::sort(deltas_);
   deltas_.erase(std::unique(deltas_.begin(), deltas_.end()), deltas_.end());
@@ -103,17 +148,17 @@ Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrio
   }
 }
 
+void Placement::set_person(int person) {
+  if (person < 0)
+    throw std::invalid_argument("Placement::set_person: a negative number; count people from 0");
+  person_ = person;
+}
+
 int Placement::next() const {
-  const std::size_t trial = shown_.size();
-  const std::size_t between = deltas_.size() > 2 ? static_cast<std::size_t>(rules_.between) : 0;
-  const bool inner = trial < between;
-  const std::size_t turn = inner ? trial : trial - between;
-  const double delta = inner                                    ? inner_delta(deltas_, trial)
-                       : at_smallest[turn % at_smallest.size()] ? deltas_.front()
-                                                                : deltas_.back();
-  // The two cycles have no common divisor, so that both ends meet all distances from the contour.
-  const int distance = (inner ? inner_distances : end_distances)[turn % end_distances.size()];
-  const double contour = a().mean * std::exp(b().mean * delta);
+  const auto [delta, distance] = turn_of(rules_, deltas_, person_, static_cast<int>(shown_.size()));
+  const double own_a = grid_estimate(a_values_, own_.posterior()).mean;
+  const double own_b = grid_estimate(b_values_, own_.posterior()).mean;
+  const double contour = std::sqrt(a().mean * own_a) * std::exp((b().mean + own_b) / 2 * delta);
   const double wanted = contour * std::pow(rules_.bracket, distance);
   // Finds the setting nearest to `wanted`. A setting of another standard deviation (delta) is taken only if
   // none of this one may be shown again.
@@ -136,12 +181,15 @@ int Placement::next() const {
   return best;
 }
 
+void Placement::learn(int setting, int score) { all_.update(setting, score - lowest_); }
+
 void Placement::add(int setting, int score) {
-  quest_.update(setting, score - lowest_);
+  learn(setting, score);
+  own_.update(setting, score - lowest_);
   shown_.push_back(setting);
 }
 
-GridEstimate Placement::a() const { return grid_estimate(a_values_, quest_.posterior()); }
-GridEstimate Placement::b() const { return grid_estimate(b_values_, quest_.posterior()); }
+GridEstimate Placement::a() const { return grid_estimate(a_values_, all_.posterior()); }
+GridEstimate Placement::b() const { return grid_estimate(b_values_, all_.posterior()); }
 
 }  // namespace stats

@@ -1,12 +1,16 @@
 #pragma once
 /// Adaptive placement for the PTPE: each setting, a mean and a standard deviation of the frame rate, is
-/// chosen near the contour of just satisfactory settings that the ratings so far suggest.
+/// chosen near the contour of just satisfactory settings that the ratings so far suggest: those of this
+/// person and of the people before.
 ///
 /// A rating says equally much about the contour wherever it lies on the scale, except near the scale's ends.
-/// So the settings of one person lie above, on and below the present estimate of the contour in turn. Those
-/// on it determine the contour whatever the curvature of the ratings about it, the others their slope. Three
-/// of four trials use the smallest standard deviation, the fourth the largest: there a and b are determined
-/// best. Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at random
+/// So the settings lie above, on and below the present estimate of the contour in turn. Those on it determine
+/// the contour whatever the curvature of the ratings about it, the others their slope. The turns of
+/// successive people begin at different places, so that all distances occur early and late. The estimate lies
+/// half-way between that of this person and that of all people, because settings that follow each person's
+/// own taste would hide how much people differ. Three of four trials use the smallest standard deviation, the
+/// fourth the largest: there a and b are determined best. Some trials, spread over the session, use those
+/// between. Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at random
 /// (docs/decisions.md).
 
 #include <cstddef>
@@ -27,7 +31,7 @@ struct PlacementSetting {
 ///
 ///   level + slope (mu - a exp(b delta)) + noise,
 ///
-/// rounded to the nearest score of the scale. a and b are those of this person. All points of the grid have
+/// rounded to the nearest score of the scale. a and b are those of all people. All points of the grid have
 /// equal weight.
 struct PlacementPrior {
   std::vector<double> a, b;                   ///< grids, frames/s and s/frame
@@ -45,31 +49,44 @@ PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 
 /// Rules of one session.
 struct PlacementRules {
-  /// Number of first trials, which use the standard deviations between the smallest and the largest in turn.
-  /// Without such trials the form of the contour, the just satisfactory mean frame rate over the standard
-  /// deviation, cannot be checked, and estimate_direct() has no fit.
-  int between = 3;
+  int trials = 10;  ///< planned number of trials of the session
+  /// Number of trials, spread evenly over the session, that use the standard deviations between the smallest
+  /// and the largest in turn. Without such trials the form of the contour, the just satisfactory mean frame
+  /// rate over the standard deviation, cannot be checked, and estimate_direct() has no fit.
+  int between = 2;
   /// Factor, above 1, between the estimated contour and the mean frame rates that are shown above and below
   /// it.
-  double bracket = 1.5;
+  double bracket = 1.42;
   int most_of_one = 1000000;  ///< largest number of times that a setting is shown in a session
 };
 
+/// A number of trials between the ends that suits a session: a fifth of its trials, but 2 at least.
+int usual_between(int trials);
+
 /// The placement of one session. Its state follows from the settings shown and the ratings given, so a
 /// resumed session continues with the same settings.
+///
+///   stats::Placement placement(settings, stats::placement_prior(settings), {.trials = 10});
+///   for (const auto& [setting, score] : earlier) placement.learn(setting, score);
+///   placement.add(placement.next(), 5);
 class Placement {
  public:
   /// std::invalid_argument: no setting, or rules out of range.
   Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior,
             const PlacementRules& rules = {});
 
+  /// A number that rises by 1 from person to person; 0 before the first call. Turns of distances begin at
+  /// another place for each number. std::invalid_argument: a negative number.
+  void set_person(int person);
+  /// Adds a rating of a setting by another person. std::invalid_argument if there is no such setting or the
+  /// score is not on the scale.
+  void learn(int setting, int score);
+  /// As learn(), for a rating by this person: the trial counts as shown.
+  void add(int setting, int score);
   /// Index of the next setting. std::logic_error if every setting was shown as often as the rules allow.
   int next() const;
-  /// Adds a rating of a setting. std::invalid_argument if there is no such setting or the score is not on the
-  /// scale.
-  void add(int setting, int score);
 
-  /// Summaries of the posterior of this person's a and b.
+  /// Summaries of the posterior of a and b given the ratings of all people.
   GridEstimate a() const;
   GridEstimate b() const;
 
@@ -77,9 +94,9 @@ class Placement {
   std::vector<PlacementSetting> settings_;
   PlacementRules rules_;
   std::vector<double> deltas_;  ///< distinct standard deviations of the frame rate in settings_, ascending
-  int lowest_ = 1;
+  int lowest_ = 1, person_ = 0;
   std::vector<double> a_values_, b_values_;  ///< value at each parameter point of quest_
-  QuestPlus quest_;
+  QuestPlus all_, own_;  ///< given the ratings of all people, and given this person's alone
   std::vector<int> shown_;
 };
 

@@ -60,9 +60,11 @@ OneStudy run_study(const PlacementStudy& study, const std::vector<PlacementSetti
                    const Placement& fresh, std::uint64_t seed) {
   std::vector<PilotRating> ratings;
   std::mt19937_64 orders(seed);
+  Placement known = fresh;  // what the ratings of all people so far say
   for (int person = 0; person < study.people; ++person) {
     Rater rater(study, seed + static_cast<std::uint64_t>(person));
-    Placement placement = fresh;
+    Placement placement = known;
+    placement.set_person(person);
     std::vector<int> order(settings.size());
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), orders);
@@ -71,7 +73,10 @@ OneStudy run_study(const PlacementStudy& study, const std::vector<PlacementSetti
       const int index = study.adaptive ? placement.next() : order[static_cast<std::size_t>(trial)];
       const PlacementSetting& setting = settings[static_cast<std::size_t>(index)];
       const int score = rater.rate(setting, static_cast<double>(trial) / trials);
-      if (study.adaptive) placement.add(index, score);
+      if (study.adaptive) {
+        placement.add(index, score);
+        known.learn(index, score);
+      }
       ratings.push_back({person, setting.mu, setting.delta, setting.mu, setting.mu, setting.delta,
                          static_cast<double>(score)});
     }
@@ -103,7 +108,10 @@ PlacementSummary simulate_placement(const PlacementStudy& study, const std::vect
                                     const std::vector<PlacementSetting>& candidates, int studies,
                                     std::uint64_t seed) {
   const auto& settings = study.adaptive ? candidates : fixed;
-  const Placement fresh(settings, placement_prior(settings), study.rules);
+  PlacementRules rules = study.rules;
+  rules.trials = study.adaptive ? study.trials : static_cast<int>(settings.size());
+  rules.between = usual_between(rules.trials);
+  const Placement fresh(settings, placement_prior(settings), rules);
   std::vector<OneStudy> all(static_cast<std::size_t>(studies));
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < studies; ++i)

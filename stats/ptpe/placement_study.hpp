@@ -28,7 +28,7 @@ struct PlacementStudy {
   int people = 16;
   int trials = 10;  ///< trials of each person; without effect on fixed settings, which are all shown once
   bool adaptive = true;
-  PlacementRules rules = {};  ///< rules of an adaptive study
+  PlacementRules rules = {};  ///< rules of an adaptive study; trials and between follow from `trials`
 };
 
 /// Averages over simulated studies. Each study is analysed by estimate_direct() with the jackknife over

@@ -122,22 +122,55 @@ TEST(AdaptiveTrack, AResumedSessionContinuesExactly) {
   }
 }
 
-TEST(AdaptiveTrack, PlacementBeginsBetweenTheEndsUnlessTheProtocolSaysOtherwise) {
+TEST(AdaptiveTrack, AFifthOfPlacedTrialsLieBetweenTheEndsUnlessTheProtocolSaysOtherwise) {
   const auto fixed = [](const std::string& text) {
     return parse_protocol(text, "study.toml").design.procedure->fixed;
   };
-  EXPECT_EQ(fixed(changed(placement_text(), "fixed = 2\n", "")), 3);
+  EXPECT_EQ(fixed(changed(placement_text(), "fixed = 2\n", "")), 2);
   EXPECT_EQ(fixed(changed(placement_text(), "fixed = 2\n", "fixed = 0\n")), 0);
   EXPECT_EQ(fixed(changed(changed(placement_text(), "fixed = 2\n", ""), "trials = 10", "trials = 2")), 2);
 }
 
-TEST(AdaptiveTrack, FixedTrialsComeFirstAndNoLevelTooOften) {
+TEST(AdaptiveTrack, FixedTrialsAreInTheirPlaceAndNoLevelTooOften) {
   const auto cells = play(read(placement_text()), "ptpe:a=25,b=0.02", never);
-  for (const int trial : {0, 1}) EXPECT_EQ(cells[static_cast<std::size_t>(trial)].first % 3, 1) << "SD 4";
+  for (int trial = 0; trial < 10; ++trial)
+    EXPECT_EQ(cells[static_cast<std::size_t>(trial)].first % 3 == 1, trial % 5 == 3) << "SD 4: " << trial;
   const auto quest = play(read(short_quest()), "detect:hitch_ms,threshold=80", never);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(quest[static_cast<std::size_t>(i)].first, i * 11 / 5);
   std::map<int, int> times;
   for (const auto& [first, second] : cells) EXPECT_LE(++times[first], 2);
+}
+
+TEST(AdaptiveTrack, PlacementLearnsFromEarlierSessionsOfTheSameKind) {
+  const Protocol protocol = read(placement_text());
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", sqlite::Open::Create);
+  store.add_run(test::run_plan(protocol, {"P01", "P02", "P03"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  const std::string question = protocol.design.procedure->question;
+  FeatureTable features;
+  const auto person = make_observer("ptpe:a=25,b=0.02", features);
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(store.earlier_answers(sessions.at(i).id, question).size(), 10 * i);
+    test::Desk desk(protocol);
+    run_session(protocol, sessions.at(i), desk.parts(*person, store), {});
+  }
+  EXPECT_EQ(store.earlier_answers(sessions.at(2).id, question).size(), 20u);
+  EXPECT_EQ(store.earlier_answers(sessions.at(0).id, question).size(), 0u) << "later sessions do not count";
+  sqlite::Connection(folder / "study.db", sqlite::Open::Write)
+      .execute("UPDATE session SET observer = NULL WHERE participant = 'P01'");
+  EXPECT_EQ(store.earlier_answers(sessions.at(2).id, question).size(), 10u)
+      << "people and observers are apart";
+
+  // Everyone before was satisfied at any rate, so the first setting is lower.
+  TrackAnswers answers;
+  const auto mean_of = [&](const TrackAnswers& known) {
+    const int cell = chosen_trial(protocol, *sessions.at(2).units.back().trial, known).first;
+    return protocol.design.cells[static_cast<std::size_t>(cell)].levels[0];
+  };
+  const int before = mean_of(answers);
+  for (int cell = 0; cell < 15; ++cell) answers.earlier.push_back({cell, {}, 7});
+  EXPECT_LT(mean_of(answers), before);
 }
 
 TEST(AdaptiveTrack, PairsKeepTheStandardAndTheirOrder) {
@@ -163,7 +196,7 @@ int recovered(int people) {
     PlannedTrial planned;
     std::vector<TrackAnswer> answers;
     for (int trial = 0; trial < protocol.design.procedure->trials; ++trial) {
-      const int cell = chosen_trial(protocol, planned, answers).first;
+      const int cell = chosen_trial(protocol, planned, {answers}).first;
       occasion.position = trial;
       occasion.shown = {{cell, protocol.design.cells[static_cast<std::size_t>(cell)], {}, 0, 0}};
       answers.push_back({cell, {}, observer.score(*all_questions(protocol).back().second, occasion, true)});
