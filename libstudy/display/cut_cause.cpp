@@ -30,13 +30,20 @@ CutWords words_of(CutCause cause) {
     case CutCause::Gaze:
       return {"the eye tracker lost the eyes for over 100 ms",
               "check how the headset sits, and calibrate the eye tracker"};
+    case CutCause::ServiceGone:
+      return {"the headset's software ended", "start the headset's software again"};
+    case CutCause::Hang:
+      return {"the headset's software hung", "restart the headset's software"};
   }
   return {};
 }
 
 void note_cut(std::optional<CutCause>& noted, CutCause cause) {
-  const bool explains = cause == CutCause::SessionLost ||  // a lost session also ends pictures and focus
-                        (noted == CutCause::Focus && cause == CutCause::TakenOff);
+  // Without focus or off the head, the software soon draws no pictures; off the head it has no focus either.
+  const bool explains =
+      cause == CutCause::SessionLost ||  // a lost session also ends pictures and focus
+      (cause == CutCause::TakenOff && (noted == CutCause::Focus || noted == CutCause::NotDrawn)) ||
+      (cause == CutCause::Focus && noted == CutCause::NotDrawn);
   if (!noted || explains) noted = cause;
 }
 

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "stats/base/error.hpp"
+
 namespace study {
 
 /// The cause of a cut. A new cause needs a case in words_of(). If it is the last one, set Last to it: tests
@@ -20,7 +22,9 @@ enum class CutCause {
   Rate,          ///< the headset's refresh rate changed
   SessionLost,   ///< the headset's software lost the session
   Gaze,          ///< the eye tracker lost the eyes
-  Last = Gaze
+  ServiceGone,   ///< the headset's software ended or asked the program to leave
+  Hang,          ///< the headset's software let no frame begin
+  Last = Hang
 };
 
 struct CutWords {
@@ -29,8 +33,19 @@ struct CutWords {
 };
 CutWords words_of(CutCause cause);
 
-/// Stores a cause in `noted` if `noted` is empty. Two causes also replace an earlier cause, because they
-/// explain it: a lost session replaces any cause, and a headset taken off replaces a lost focus.
+/// An error of the display that ends the program, and so cuts the showing for `cause`.
+class DisplayGone : public base::Error {
+ public:
+  DisplayGone(CutCause cause, const std::string& place, const std::string& problem, const std::string& mend)
+      : base::Error(place, problem, mend), cause_(cause) {}
+  CutCause cause() const { return cause_; }
+
+ private:
+  CutCause cause_;
+};
+
+/// Stores a cause in `noted` if `noted` is empty, or if the cause explains the earlier one: a lost session
+/// explains any cause, a headset taken off explains a lost focus, and both explain missing pictures.
 void note_cut(std::optional<CutCause>& noted, CutCause cause);
 
 }  // namespace study

@@ -69,8 +69,11 @@ class SlotSource {
   virtual void stop_slots() = 0;
   /// Distance between the eyes in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
-  /// Events of the headset since the last call, in words for the log. Each event may have changed facts().
+  /// Events of the headset since the last call, in words for the log.
   virtual std::vector<std::string> take_news() = 0;
+  /// Properties since the last call, in order: one entry for each refresh rate that came into force and for
+  /// each new session. The measured rate is missing where the rate changed again at once.
+  virtual std::vector<HeadsetFacts> take_facts() { return {}; }
 };
 
 }  // namespace study

@@ -91,6 +91,9 @@ class Display {
   /// The measured refresh rate, Hz: a screen of 60 Hz may run at 59.95 Hz. A hold of k periods lasts
   /// k / measured_hz() seconds.
   virtual double measured_hz() const { return refresh_hz(); }
+  /// False while the refresh rate is not known, or not the one that the protocol requires: no trial may
+  /// begin.
+  virtual bool keeps_rate() const { return true; }
   /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A window on
   /// a screen with a fixed refresh returns the middle between two refreshes: small delays then move no frame
   /// into another refresh period. A headset returns the display time of a slot.

@@ -18,9 +18,6 @@ namespace {
 
 constexpr std::chrono::seconds most_idle{30};
 constexpr std::chrono::milliseconds slot_wait{100};
-/// A picture that stays on for longer than most_held_s means that the program hangs. The picture then fades
-/// to black within fade_s: the participant must not stay in a frozen world.
-constexpr double most_held_s = 2, fade_s = 0.3;
 
 std::int64_t system_ns() { return RealClock().now_ns(); }
 
@@ -173,6 +170,7 @@ bool FrameLoop::poll() {
     // -1, so this move takes effect at the next slot.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
     if (event.kind == Kind::Presence) facts_.worn = event.worn;
+    if (event.kind == Kind::Refresh) facts_.rate.measured_hz.reset();
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
   facts_.state = session_->state();
@@ -223,8 +221,9 @@ HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
       page_turns_.take();
       shown_place_ = waiting_place_;
     }
-    if (picture_turns_.shows() && !slot.should_render) note_cut(unseen_, CutCause::NotDrawn);
     out = layers_at(slot.predicted_ns, picture_turns_.read(), page_turns_.read());
+    if (!flashes_.admit(slot.predicted_ns, slot.should_render && (out.picture || out.page))) out = {};
+    if (picture_turns_.shows() && !(slot.should_render && out.picture)) note_cut(unseen_, CutCause::NotDrawn);
     if (out.picture) record.shown = shown_from_;
     record.world = facts_.world;
     record.input.focused &= facts_.worn;  // input while the headset is off is accidental
@@ -242,7 +241,7 @@ HeadsetLayers FrameLoop::layers_at(std::int64_t at_ns, std::size_t picture, std:
   if (page_turns_.shows()) out.page = pages_[page].get();
   out.views = shown_from_.views;
   out.in_head = shown_from_.in_head;
-  out.light = light_at(at_ns);
+  out.light = light_of_held(1e-9 * static_cast<double>(at_ns - came_on_.predicted_ns));
   out.place = shown_place_;
   out.picture_number = picture_turns_.number();
   out.page_number = page_turns_.number();
@@ -272,7 +271,8 @@ void FrameLoop::turn() {
     while (!turn_slot()) {
       if (!events_.empty()) return;  // an event may tell the caller why no slots come
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "it has run no frame for 30 s: it is not worn, or its software hangs",
+        throw DisplayGone(CutCause::TakenOff, "headset",
+                          "it has run no frame for 30 s: it is not worn, or its software hangs",
                           "put it on, or restart its software; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -388,11 +388,6 @@ std::vector<HeadsetRecord> FrameLoop::take_records() {
 std::optional<CutCause> FrameLoop::take_unseen() {
   const std::lock_guard held(mutex_);
   return std::exchange(unseen_, {});
-}
-
-float FrameLoop::light_at(std::int64_t at_ns) const {
-  const double held_s = 1e-9 * static_cast<double>(at_ns - came_on_.predicted_ns);
-  return static_cast<float>(std::clamp(1 - (held_s - most_held_s) / fade_s, 0.0, 1.0));
 }
 
 }  // namespace study

@@ -14,6 +14,7 @@
 #include "libsim/gl/gl_context.hpp"
 #include "libsim/gl/offscreen.hpp"
 #include "libstudy/display/cut_cause.hpp"
+#include "libstudy/headset/flash_guard.hpp"
 #include "libstudy/headset/headset_session.hpp"
 #include "libstudy/headset/picture_turns.hpp"
 #include "libstudy/headset/session_maker.hpp"
@@ -68,7 +69,8 @@ struct SeenNow {
 ///
 /// If the runtime loses the session, SessionMaker makes a new session. Events report the loss and the new
 /// session; no slots come in between. When the session is lost or the world's origin moves, picture and page
-/// disappear, and the slots are black until another picture or page is shown.
+/// disappear, and the slots are black until another picture or page is shown. Slots are also black where
+/// pictures and pages would flash (FlashGuard).
 class FrameLoop {
  public:
   /// Largest number of stored records, enough for the slots of more than a minute.
@@ -144,7 +146,6 @@ class FrameLoop {
   void black_out(CutCause cause);
   using AskViews = EyeViews (HeadsetSession::*)(std::int64_t);
   EyeViews ask_views(AskViews ask, std::int64_t at_ns);
-  float light_at(std::int64_t at_ns) const;
 
   sim::GlContext gl_;
   std::optional<sim::GlContext> slots_gl_;  ///< context of the slot thread; shares objects with gl_
@@ -161,8 +162,9 @@ class FrameLoop {
   PictureTurns picture_turns_, page_turns_;
   HeldViews shown_from_, waiting_from_;
   HeadsetPage shown_place_, waiting_place_;
-  std::int64_t due_ns_ = 0;         ///< due time of the waiting picture
-  HeadsetSlot came_on_;             ///< first slot of the shown picture
+  std::int64_t due_ns_ = 0;  ///< due time of the waiting picture
+  HeadsetSlot came_on_;      ///< first slot of the shown picture
+  FlashGuard flashes_;
   std::optional<CutCause> unseen_;  ///< why a shown picture could not be seen
   bool running_ = false, stopping_ = false;
   bool runtime_ends_ = false;  ///< the runtime shuts down: no new session is possible

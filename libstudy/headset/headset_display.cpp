@@ -65,7 +65,10 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         "put it on, and close menus, overlays and other programs in it");
   await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  spoilt_.reset();  // discards the cut that a change to the requested rate noted
+  // Discards what a change to the requested rate noted.
+  spoilt_.reset();
+  take_news();
+  take_rates();
 }
 
 /// The nominal rate, Hz, if the measured rate has settled and meets the rules; none otherwise.
@@ -75,17 +78,30 @@ std::optional<double> HeadsetDisplay::met_hz() const {
   return nominal_refresh(*measured_hz, reported_hz.value_or(0));
 }
 
-/// Accepts a new session once its refresh rate is known, because the schedules of trials depend on the rate.
-void HeadsetDisplay::settle_new_session() {
-  const auto hz = met_hz();
-  if (!hz) {
-    if (facts().last.index > most_slots) throw base::Error("headset", rate_problem(rules_), rate_mend);
-    return;
-  }
+/// The rate changed, by an event of the runtime or by measurement. Cuts also while no stimulus is shown: the
+/// schedule of the current trial has the old rate's intervals.
+void HeadsetDisplay::change_rate(double from_hz, double to_hz) {
+  news_.push_back("the refresh rate changed from " + base::shortest(std::round(100 * from_hz) / 100) +
+                  " to " + base::shortest(std::round(100 * to_hz) / 100) + " Hz");
+  if (unsettled_) rates_.push_back(*unsettled_);
+  const bool reported = facts().rate.reported_hz.has_value();
+  unsettled_ = reported ? HeadsetRate{to_hz, {}} : HeadsetRate{{}, to_hz};
+  refresh_hz_ = nominal_refresh(to_hz);
+  note_cut(spoilt_, CutCause::Rate);
+}
+
+/// Takes the rate over once it is measured: after a change, and of a new session, which counts as made only
+/// then, because the schedules of trials depend on its rate.
+void HeadsetDisplay::settle_rate() {
+  const HeadsetRate rate = facts().rate;
+  if (!rate.measured_hz || !(unsettled_ || new_session_)) return;
+  if (new_session_) news_.emplace_back("a session was made anew");
   new_session_ = false;
-  news_.emplace_back("a session was made anew");
-  if (near_rate(*hz, refresh_hz_)) return;
-  refresh_hz_ = *hz;
+  unsettled_.reset();
+  rates_.push_back(rate);
+  const double hz = nominal_refresh(*rate.measured_hz, rate.reported_hz.value_or(0));
+  if (near_rate(hz, refresh_hz_)) return;
+  refresh_hz_ = hz;
   note_cut(spoilt_, CutCause::Rate);
 }
 
@@ -143,26 +159,21 @@ void HeadsetDisplay::poll_requests() {
   for (const HeadsetEvent& event : loop_.take_events()) {
     const bool state = event.kind == Kind::State;
     if (state && event.state == HeadsetState::Exiting)
-      throw base::Error("headset", "its software asked the program to leave",
+      throw DisplayGone(CutCause::ServiceGone, "headset", "its software asked the program to leave",
                         "vip-study resume continues a session");
     if (event.kind == Kind::RuntimeEnds)
-      throw base::Error("headset", "its software is shutting down",
+      throw DisplayGone(CutCause::ServiceGone, "headset", "its software is shutting down",
                         "start it again; vip-study resume continues a session");
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
     if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, CutCause::SessionLost);
-    if (event.kind == Kind::Refresh && !new_session_) {
-      refresh_hz_ = nominal_refresh(event.to_hz);
-      // Noted also while no stimulus is shown: the schedule of the current trial has the old rate's
-      // intervals.
-      note_cut(spoilt_, CutCause::Rate);
-    }
+    if (event.kind == Kind::Refresh && !new_session_) change_rate(event.from_hz, event.to_hz);
     if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
     if (event.kind == Kind::Presence && !event.worn && playing_) note_cut(spoilt_, CutCause::TakenOff);
   }
   const auto unseen = loop_.take_unseen();
   if (unseen && playing_) note_cut(spoilt_, *unseen);
-  if (new_session_) settle_new_session();
+  settle_rate();
 }
 
 void HeadsetDisplay::turn() {

@@ -35,6 +35,7 @@ class HeadsetDisplay final : public Display {
   TimingGrade grade() const override;
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;
+  bool keeps_rate() const override { return met_hz().has_value(); }
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
   /// Stores the stimulus. present() draws it as late as possible, for the predicted head pose. With
   /// SlotDrive::Thread, the first frame of a showing is also drawn here, to measure the drawing time.
@@ -83,14 +84,19 @@ class HeadsetDisplay final : public Display {
   /// session or its focus was lost, the headset was taken off, a picture was not drawn, the poses of the eyes
   /// were unknown, the world's origin moved, or the refresh rate changed.
   std::optional<CutCause> take_spoilt();
-  /// Lines for the log since the last call: the session was lost, or a new session was made.
+  /// Lines for the log since the last call: the session was lost, a new session was made, or the refresh rate
+  /// changed.
   std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+  /// The refresh rates that came into force since the last call, in order, and that of each new session. A
+  /// rate that changed again before it was measured has only one of the two values.
+  std::vector<HeadsetRate> take_rates() { return std::exchange(rates_, {}); }
 
  private:
   std::int64_t lead_ns() const;
   void poll_requests();
   std::optional<double> met_hz() const;
-  void settle_new_session();
+  void change_rate(double from_hz, double to_hz);
+  void settle_rate();
   void share_records();
   void check_time_stands_still();
   void await(const std::function<bool()>& ready, const std::string& problem, const char* mend);
@@ -103,7 +109,9 @@ class HeadsetDisplay final : public Display {
   std::int64_t draw_ns_ = 0;  ///< largest recent drawing time; 0: nothing drawn, or SlotDrive::Caller
   std::vector<HeadsetRecord> for_pages_, for_record_;
   std::vector<std::string> news_;
-  std::optional<CutCause> spoilt_;  ///< why the rest of the showing is black
+  std::vector<HeadsetRate> rates_;
+  std::optional<HeadsetRate> unsettled_;  ///< the rate of the last change; none once it is measured
+  std::optional<CutCause> spoilt_;        ///< why the rest of the showing is black
   bool slots_by_thread_;
   bool playing_ = false;      ///< a stimulus is being shown
   bool new_session_ = false;  ///< the session was lost, and the rate of a new one has not settled

@@ -159,6 +159,16 @@ HeadsetFacts HeadsetRecorder::facts() const {
   return out;
 }
 
+std::vector<HeadsetFacts> HeadsetRecorder::take_facts() {
+  std::vector<HeadsetFacts> out;
+  for (const HeadsetRate& rate : display_.take_rates()) {
+    out.push_back(facts());
+    out.back().refresh_told_hz = rate.reported_hz;
+    out.back().refresh_measured_hz = rate.measured_hz;
+  }
+  return out;
+}
+
 void HeadsetRecorder::start_slots(bool with_heads) {
   with_heads_ = with_heads;
   drain();

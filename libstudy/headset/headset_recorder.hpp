@@ -38,6 +38,7 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   void stop_slots() override { slots_.clear(); }
   std::optional<double> ipd_mm() override;
   std::vector<std::string> take_news() override { return display_.take_news(); }
+  std::vector<HeadsetFacts> take_facts() override;
 
   /// Ray of the gaze, or of the head, in the newest finished slot; in metres of the scene. None if unknown.
   std::optional<RoomRay> ray();

@@ -18,8 +18,8 @@ namespace {
 
 constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
-/// Relative difference up to which a measured rate counts as the rate that an event reported.
-constexpr double rate_tolerance = 0.04;
+/// Relative difference up to which a reported rate counts as the one that was asked for.
+constexpr double rate_tolerance = 0.005;
 /// Largest number of successive slots without a valid predicted time before the session ends with an error.
 constexpr int most_untimed = 30;
 
@@ -62,6 +62,9 @@ struct HeadsetSession::Parts {
         actions(session, clock, system.eye_gaze) {
     sizes = picture_sizes(system, choice);
     swapchains = make_swapchains(session, sizes);
+    if (choice.refresh_hz) refresh.request(*choice.refresh_hz);
+    held_hz = choice.refresh_hz;
+    if (const auto hz = refresh.reported_hz()) take_rate(*hz);
   }
 
   std::chrono::nanoseconds patience;
@@ -76,7 +79,9 @@ struct HeadsetSession::Parts {
   std::vector<base::PictureSize> sizes;                ///< of left eye, right eye and, if requested, page
   std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< in the order of `sizes`
   RateMeter meter;
-  double reported_hz = 0;                ///< rate of the last event; 0: no event came
+  double reported_hz = 0;         ///< rate that the runtime reported last; 0: none
+  std::optional<double> held_hz;  ///< rate that the program asked for; it asks again while it is not in force
+  std::int64_t asked_ns = 0;      ///< when it asked last
   std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event reported
   std::int64_t next_index = 0;
   XrTime last_time = 0;          ///< predicted time of the last slot; 0: no slot yet
@@ -86,6 +91,9 @@ struct HeadsetSession::Parts {
 
   XrFrameState wait_frame();
   XrTime time_for_untimed();
+  void take_rate(double hz);
+  void follow_rate(std::int64_t predicted_ns);
+  void hold_rate(std::int64_t predicted_ns);
   EyeViews locate(std::int64_t runtime_time, const Space& space) const;
   XrCompositionLayerProjectionView layer_view(const HeadsetEye& eye, const Swapchain& swapchain) const;
 };
@@ -109,7 +117,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
   if (!back) {
     session.leave_behind();
     xr.leave_behind();
-    throw base::Error("headset",
+    throw DisplayGone(CutCause::Hang, "headset",
                       fmt::format("the runtime has let no frame begin for {:g} s",
                                   std::chrono::duration<double>(patience).count()),
                       "restart the headset's software; vip-study resume continues a session");
@@ -124,6 +132,40 @@ XrTime HeadsetSession::Parts::time_for_untimed() {
   if (last_time > 0 && last_period > 0 && ++untimed <= most_untimed) return last_time + last_period;
   throw base::Error("headset", "the runtime predicts no valid times for its frames",
                     "restart the headset's software; vip-study resume continues a session");
+}
+
+void HeadsetSession::Parts::take_rate(double hz) {
+  reported_hz = hz;
+  meter.report(hz);
+}
+
+/// Measures the rate. A change that the runtime tells by no event becomes an event: the rate that it reports
+/// is another one than before or, where it reports none that fits, the measured rate is.
+void HeadsetSession::Parts::follow_rate(std::int64_t predicted_ns) {
+  std::optional<RateChange> change = meter.add(predicted_ns);
+  if (meter.contradicted()) {
+    const double before_hz = reported_hz, now_hz = refresh.reported_hz().value_or(before_hz);
+    if (now_hz == before_hz) {
+      meter.doubt();
+    } else {
+      take_rate(now_hz);
+      change = RateChange{before_hz, now_hz};
+    }
+  }
+  if (!change) return;
+  measured = {.kind = HeadsetEvent::Kind::Refresh,
+              .from_hz = change->from_hz,
+              .to_hz = change->to_hz,
+              .at_ns = predicted_ns};
+}
+
+/// Asks for the held rate once a second while the runtime reports another one.
+void HeadsetSession::Parts::hold_rate(std::int64_t predicted_ns) {
+  constexpr std::int64_t ask_again_ns = 1'000'000'000;
+  const bool held = !held_hz || std::abs(reported_hz - *held_hz) <= rate_tolerance * *held_hz;
+  if (held || predicted_ns - asked_ns < ask_again_ns) return;
+  asked_ns = predicted_ns;
+  refresh.request_again(*held_hz);
 }
 
 XrCompositionLayerProjectionView HeadsetSession::Parts::layer_view(const HeadsetEye& eye,
@@ -160,9 +202,7 @@ EyeViews HeadsetSession::Parts::locate(std::int64_t runtime_time, const Space& s
 }
 
 HeadsetSession::HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& choice)
-    : parts_(std::make_unique<Parts>(gl, choice)) {
-  if (choice.refresh_hz) request_rate(*choice.refresh_hz);
-}
+    : parts_(std::make_unique<Parts>(gl, choice)) {}
 HeadsetSession::~HeadsetSession() = default;
 
 std::string HeadsetSession::description() const {
@@ -189,7 +229,7 @@ void HeadsetSession::request_exit() { parts_->lifecycle.request_exit(); }
 std::vector<HeadsetEvent> HeadsetSession::poll() {
   std::vector<HeadsetEvent> events = parts_->lifecycle.poll();
   for (const HeadsetEvent& event : events) {
-    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->reported_hz = event.to_hz;
+    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->take_rate(event.to_hz);
     if (event.state == HeadsetState::Stopping) parts_->meter.interrupt();
   }
   if (parts_->measured) events.push_back(*parts_->measured);
@@ -208,13 +248,8 @@ HeadsetSlot HeadsetSession::wait() {
   parts.last_time = slot.runtime_time;
   parts.last_period = slot.period_ns;
   if (!timed) return slot;  // the meter counts it as a slot that was left out
-  const auto change = parts.meter.add(slot.predicted_ns);
-  if (change && std::abs(change->to_hz - parts.reported_hz) > rate_tolerance * change->to_hz) {
-    parts.measured = {.kind = HeadsetEvent::Kind::Refresh,
-                      .from_hz = change->from_hz,
-                      .to_hz = change->to_hz,
-                      .at_ns = slot.predicted_ns};
-  }
+  parts.follow_rate(slot.predicted_ns);
+  parts.hold_rate(slot.predicted_ns);
   return slot;
 }
 

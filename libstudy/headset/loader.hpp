@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/display/cut_cause.hpp"
 #include "libstudy/headset/openxr.hpp"
 #include "stats/base/error.hpp"
 
@@ -13,11 +14,12 @@ namespace study {
 
 /// Error: the session or the whole runtime is gone. Objects of a lost session or runtime can only be
 /// destroyed.
-class HeadsetLost final : public base::Error {
+class HeadsetLost final : public DisplayGone {
  public:
   HeadsetLost(const std::string& place, const std::string& problem, const std::string& mend,
               bool with_runtime)
-      : base::Error(place, problem, mend), with_runtime_(with_runtime) {}
+      : DisplayGone(with_runtime ? CutCause::ServiceGone : CutCause::SessionLost, place, problem, mend),
+        with_runtime_(with_runtime) {}
   /// True if the runtime is gone as well; false: a new session can be made.
   bool with_runtime() const { return with_runtime_; }
 

@@ -33,7 +33,7 @@ void read_in_session(const XrConnection& xr, const HeadsetSystem& system, Headse
   found.formats = session.formats();
   const RefreshControl refresh(session);
   found.refresh_hz = refresh.rates();
-  found.refresh_now = refresh.reported_hz();
+  if (found.refresh_hz.size() > 1) found.refresh_now = refresh.reported_hz();
   out.session = found;
 }
 

@@ -21,8 +21,8 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 std::unique_ptr<HeadsetSession> SessionMaker::make(std::int64_t earliest_ns) {
   choice_.earliest_ns = earliest_ns;
   if (made_ == most_sessions)
-    throw base::Error(
-        "headset",
+    throw DisplayGone(
+        CutCause::SessionLost, "headset",
         "its software keeps losing the session: " + std::to_string(most_sessions) + " times so far", mend);
   return made_++ == 0 ? std::make_unique<HeadsetSession>(gl_, choice_) : make_anew();
 }
@@ -37,7 +37,7 @@ std::unique_ptr<HeadsetSession> SessionMaker::make_anew() const {
         std::this_thread::sleep_for(system_wait);
         continue;
       }
-      throw base::Error("headset",
+      throw DisplayGone(CutCause::SessionLost, "headset",
                         fmt::format("its session was lost, and within {:g} s none could be made anew ({})",
                                     choice_.patience_s, first_line(error.what())),
                         mend);
@@ -54,7 +54,7 @@ void require_alike(const SessionFacts& before, const SessionFacts& after) {
   const bool same_size =
       after.picture.width == before.picture.width && after.picture.height == before.picture.height;
   if (same_size && (after.eye_gaze || !before.eye_gaze)) return;
-  throw base::Error("headset",
+  throw DisplayGone(CutCause::SessionLost, "headset",
                     std::string("its session was lost, and the next one has ") +
                         (same_size ? "no eye tracker" : "pictures of another size"),
                     "check the headset's software, and continue with vip-study resume");

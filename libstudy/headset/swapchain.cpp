@@ -69,7 +69,7 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
         XR_TIMEOUT_EXPIRED)
       return index;
   } while (std::chrono::steady_clock::now() < deadline);
-  throw base::Error("headset", "the runtime does not release an image for the next picture",
+  throw DisplayGone(CutCause::Hang, "headset", "the runtime does not release an image for the next picture",
                     "restart the headset's software; vip-study resume continues a session");
 }
 

@@ -7,10 +7,15 @@ namespace study {
 
 namespace {
 
-// Interval between two polls of the eye tracker, s.
+// Interval between two looks at a condition, s.
 constexpr double look_again_s = 0.02;
 
 bool allowed(const Running& run) { return run.parts.store.allows_gaze(run.session.id); }
+
+void record_ipd(const Running& run) {
+  if (const auto ipd_mm = run.parts.slots->ipd_mm())
+    run.parts.store.add_ipd(run.session.id, run.now_ns(), *ipd_mm);
+}
 
 /// Lets the gaze source buffer samples during the lifetime of this object.
 class Listening {
@@ -71,18 +76,25 @@ void Recording::require_gaze() const {
   if (lost_) throw TrialAgain{CutCause::Gaze};
 }
 
+bool comes_true(const Running& run, const std::function<bool()>& condition, double within_s,
+                const Check& check) {
+  const std::int64_t until_ns = run.now_ns() + std::llround(1e9 * within_s);
+  while (!condition()) {
+    if (run.now_ns() >= until_ns) return false;
+    run.parts.participant.pause({PauseKind::Black, look_again_s}, run.parts.clock, check);
+  }
+  return true;
+}
+
 bool sees_eyes(const Running& run, double within_s, const Check& check) {
   GazeSource* const gaze = run.parts.gaze;
   if (!gaze || gaze->origin() != GazeOrigin::Tracker || !allowed(run)) return true;
   const Listening listening(*gaze);
-  const std::int64_t until_ns = run.now_ns() + std::llround(1e9 * within_s);
-  for (;;) {
-    for (const GazeSample& sample : gaze->take()) {
-      if (sample.valid) return true;
-    }
-    if (run.now_ns() >= until_ns) return false;
-    run.parts.participant.pause({PauseKind::Black, look_again_s}, run.parts.clock, check);
-  }
+  const auto seen = [gaze] {
+    const std::vector<GazeSample> samples = gaze->take();
+    return std::any_of(samples.begin(), samples.end(), [](const GazeSample& one) { return one.valid; });
+  };
+  return comes_true(run, seen, within_s, check);
 }
 
 std::string Recording::followed(const Running& run) {
@@ -94,8 +106,7 @@ std::string Recording::followed(const Running& run) {
 void record_headset(const Running& run) {
   if (!run.parts.slots) return;
   run.parts.store.add_headset(run.session.id, run.parts.slots->facts());
-  if (const auto ipd_mm = run.parts.slots->ipd_mm())
-    run.parts.store.add_ipd(run.session.id, run.now_ns(), *ipd_mm);
+  record_ipd(run);
 }
 
 std::string log_news(const Running& run) {
@@ -105,7 +116,9 @@ std::string log_news(const Running& run) {
     run.parts.store.log(run.session.id, "headset", news, run.now_ns());
     all += (all.empty() ? "" : ", ") + news;
   }
-  if (!all.empty()) record_headset(run);
+  const std::vector<HeadsetFacts> changed = run.parts.slots->take_facts();
+  for (const HeadsetFacts& facts : changed) run.parts.store.add_headset(run.session.id, facts);
+  if (!changed.empty()) record_ipd(run);
   return all;
 }
 

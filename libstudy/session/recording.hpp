@@ -3,6 +3,7 @@
 /// the participant allows gaze recording.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,6 +62,10 @@ class Recording {
   std::optional<double> ipd_mm_;
 };
 
+/// True once the condition is true; false if it is not within `within_s`. The display is black meanwhile.
+bool comes_true(const Running& run, const std::function<bool()>& condition, double within_s,
+                const Check& check);
+
 /// True if an eye tracker gives a valid sample within `within_s`; the display is black meanwhile. Also true
 /// without an eye tracker, and if the participant does not allow recording.
 bool sees_eyes(const Running& run, double within_s, const Check& check);
@@ -68,8 +73,9 @@ bool sees_eyes(const Running& run, double within_s, const Check& check);
 /// Stores the headset's facts and the interpupillary distance. Does nothing without a headset.
 void record_headset(const Running& run);
 
-/// Logs the headset's events since the last call and returns their names, separated by ", ". If there were
-/// any, also stores the headset's current facts. Returns an empty text without events or without a headset.
+/// Logs the headset's events since the last call and returns their names, separated by ", ". Also stores the
+/// headset's facts for each refresh rate and session since then. Returns an empty text without events or
+/// without a headset.
 std::string log_news(const Running& run);
 
 }  // namespace study

@@ -1,12 +1,16 @@
 #include "libstudy/session/repeats.hpp"
 
+#include <cmath>
+
 #include "libstudy/session/recording.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
 void Repeats::begin_trial() {
   cuts_ = 0;
+  require_rate();
   require_eyes();
 }
 
@@ -18,9 +22,28 @@ void Repeats::after_cut(CutCause cause) {
            words.mend});
     cuts_ = 0;
   }
+  require_rate();
   require_eyes();
   const Check check = [this] { poll_requests(run_, false); };
   run_.parts.participant.pause({PauseKind::Black, black_after_cut_s}, run_.parts.clock, check);
+}
+
+void Repeats::require_rate() {
+  const Display& display = run_.parts.display;
+  const Check check = [this] { poll_requests(run_, false); };
+  while (!comes_true(
+      run_, [&display] { return display.keeps_rate(); }, rate_within_s, check))
+    wait_for_rate();
+}
+
+void Repeats::wait_for_rate() {
+  const Display& display = run_.parts.display;
+  const auto& asked_hz = run_.protocol.headset.refresh_hz;
+  const std::string wanted = asked_hz ? "the protocol's refresh_hz = " + base::shortest(*asked_hz)
+                                      : "the refresh rate with which the session began";
+  pause({"the display runs at " + base::shortest(std::round(100 * display.measured_hz()) / 100) +
+             " Hz, at which the trial cannot be shown",
+         "set it to " + wanted + " in the headset's software"});
 }
 
 void Repeats::require_eyes() {

@@ -1,7 +1,8 @@
 #pragma once
 /// How often a cut trial is shown again, and how long the screen is black before the next showing. The rules
 /// are the same for every display and every cause of a cut, except that a cut for lack of gaze also waits
-/// until the eye tracker sees the eyes. The black screen keeps repeated cuts from making a stimulus flash.
+/// until the eye tracker sees the eyes. Nothing begins at another refresh rate than the protocol's. The black
+/// screen keeps repeated cuts from making a stimulus flash.
 
 #include "libstudy/session/running.hpp"
 
@@ -14,6 +15,9 @@ inline constexpr double black_after_cut_s = 1;
 /// Time within which an eye tracker must give a valid sample before the first trial, after a pause and after
 /// a cut for lack of gaze, s. Otherwise the session pauses.
 inline constexpr double eyes_within_s = 3;
+/// Time within which the display must have a known refresh rate, the protocol's where it names one, before
+/// each showing of a trial, s. Otherwise the session pauses. The display asks for the rate meanwhile.
+inline constexpr double rate_within_s = 5;
 
 /// Repeats cut trials and pauses by the rules of this file, in one running session. Each pause reports the
 /// problem (SessionHooks::trouble). It lasts until the experimenter continues or, if that hook is missing or
@@ -27,8 +31,12 @@ class Repeats {
   void begin_trial();
   /// Call after a cut is stored. Waits until the trial may be shown again.
   void after_cut(CutCause cause);
+  /// Pauses because the present refresh rate cannot show a trial of the session. Returns once the session
+  /// goes on; the rate may be another one then.
+  void wait_for_rate();
 
  private:
+  void require_rate();
   void require_eyes();
   void pause(const Trouble& trouble);
 

@@ -5,6 +5,7 @@
 
 #include "libstudy/session/frame_journal.hpp"
 #include "libstudy/session/recording.hpp"
+#include "stats/base/error.hpp"
 
 namespace study {
 
@@ -78,6 +79,8 @@ std::string reason_of_cut() {
     return "the program was stopped on request";
   } catch (const Ending&) {
     return "the session was ended";
+  } catch (const DisplayGone& gone) {
+    return words_of(gone.cause()).happened;
   } catch (...) {
     return "an error ended the program";
   }
@@ -125,6 +128,9 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
     } catch (const TrialAgain& cut) {
       again(showing, cut.reason());
       repeats_.after_cut(cut.cause);
+    } catch (const DisplayGone& gone) {
+      note_end(unit, gone.cause());
+      throw;
     }
   }
 }
@@ -155,6 +161,29 @@ void TrialPlayer::again(Showing& showing, const std::string& reason) {
   showing.next_interval = 0;
 }
 
+/// Notes why a trial was cut by the end of the program. A store that fails too must not hide the error that
+/// ends the program.
+void TrialPlayer::note_end(const OpenUnit& unit, CutCause cause) const {
+  try {
+    run_.parts.store.note(run_.session.id, unit.id, words_of(cause).happened);
+  } catch (const std::exception&) {
+  }
+}
+
+/// The session was refused where a setting could not be shown at its first refresh rate. At another rate it
+/// pauses until the trial can be shown.
+void TrialPlayer::compute_intervals(Showing& showing) {
+  for (;;) {
+    try {
+      showing.intervals = intervals_of(*showing.unit.trial);
+      return;
+    } catch (const base::Error&) {
+      if (run_.parts.display.refresh_hz() == first_hz_) throw;
+    }
+    repeats_.wait_for_rate();
+  }
+}
+
 std::optional<Ending> TrialPlayer::play_marked(Showing& showing) {
   run_.marking.mark(MarkerKind::TrialBegin);
   try {
@@ -176,7 +205,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
     const TrialStep& step = block.steps[i];
     check();
     // Computed again for each showing, because the refresh rate of the display may change at a cut.
-    if (i == 0) showing.intervals = intervals_of(*showing.unit.trial);
+    if (i == 0) compute_intervals(showing);
     switch (step.kind) {
       case StepKind::Black:
         black(showing, step.seconds,

@@ -12,7 +12,7 @@ namespace study {
 class TrialPlayer {
  public:
   TrialPlayer(const Running& run, Questioning& questioning)
-      : run_(run), questioning_(questioning), repeats_(run) {}
+      : run_(run), questioning_(questioning), repeats_(run), first_hz_(run.parts.display.refresh_hz()) {}
 
   /// Plays all steps. After a cut (exception TrialAgain, caught here) plays all steps again as a new attempt,
   /// which asks all questions again. Returns the ending if an answer ends the session.
@@ -37,6 +37,8 @@ class TrialPlayer {
   std::optional<Ending> play_steps(Showing& showing);
   void choose(OpenUnit& unit);
   void again(Showing& showing, const std::string& reason);
+  void note_end(const OpenUnit& unit, CutCause cause) const;
+  void compute_intervals(Showing& showing);
   std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
   const Cell& cell(const OpenUnit& unit, int interval) const;
   void black(Showing& showing, double seconds, bool stimulus_follows);
@@ -53,6 +55,7 @@ class TrialPlayer {
   const Running& run_;
   Questioning& questioning_;
   Repeats repeats_;
+  double first_hz_;  ///< the display's refresh rate when the session began
 };
 
 }  // namespace study

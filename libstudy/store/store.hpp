@@ -182,7 +182,7 @@ class Store {
   /// refer to the new framing.
   void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
   /// Stores the facts of a session's headset unless they equal the facts stored last for the session. The
-  /// comparison ignores the measured refresh rate and the fields of view.
+  /// comparison ignores the fields of view and differences of the measured refresh rate below .5 %.
   void add_headset(std::int64_t session, const HeadsetFacts& headset);
   /// Stores the interpupillary distance from this time on, mm, if it differs by more than 0.2 mm from the
   /// last stored distance.

@@ -85,8 +85,8 @@ void insert_head(Statement& insert, std::int64_t presentation, std::int64_t slot
 
 }  // namespace
 
-/// Compares with the session's last row all columns but the measured refresh rate and the fields of view,
-/// which vary slightly between equal headsets.
+/// Compares with the session's last row all columns but the fields of view, which vary slightly between equal
+/// headsets. Measured refresh rates within .5 % are equal.
 void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
   const auto& [left, right] = headset.eyes;
   Transaction transaction(*database_);
@@ -96,7 +96,8 @@ void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
             "FROM headset WHERE headset_id = (SELECT max(headset_id) FROM headset WHERE session_id = ?1) AND "
             "(runtime, runtime_version, headset, left_width_px, left_height_px, right_width_px, "
             "right_height_px, format, refresh_told_hz, hold, blend, times_convert, position_tracking, "
-            "eye_tracking) IS (?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?20, ?21, ?22, ?23, ?24))")
+            "eye_tracking) IS (?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?20, ?21, ?22, ?23, ?24) AND "
+            "coalesce(abs(refresh_measured_hz / ?11 - 1) < 0.005, refresh_measured_hz IS ?11))")
       .bind_all(session, headset.runtime, headset.runtime_version, headset.headset, left.width_px,
                 left.height_px, right.width_px, right.height_px, headset.format, headset.refresh_told_hz,
                 headset.refresh_measured_hz, left.left_deg, left.right_deg, left.up_deg, left.down_deg,

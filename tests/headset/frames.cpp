@@ -29,11 +29,11 @@ void await_begin(XrSession session) {
 }
 
 /// Time of the next refresh of the display that is at least half a period away. The script's event `drop`
-/// skips refreshes.
+/// skips refreshes once, the knob `skips` each time.
 XrTime next_slot() {
   Runtime& all = runtime();
   const XrDuration step = period(), lead = 3 * step / 2;
-  XrTime slot = all.clock.last_slot + step * (1 + all.dropped);
+  XrTime slot = all.clock.last_slot + step * (1 + all.dropped + static_cast<int>(all.knobs.at("skips")));
   all.dropped = 0;
   if (all.clock.last_slot == 0) slot = now() + lead;
   while (slot + step < now() + lead) slot += step;
@@ -72,7 +72,7 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
   Runtime& all = runtime();
   const long index = all.frames++;
   play_script(session, index);
-  const bool held_up = all.dropped > 0 || all.hang_seconds > 0;
+  const bool held_up = all.dropped > 0 || all.hang_seconds > 0 || all.knobs.at("skips") > 0;
   if (const double seconds = std::exchange(all.hang_seconds, 0); seconds > 0) hang(seconds);
   need_running(session);
   Frame frame = next_frame(index);

@@ -183,7 +183,8 @@ std::vector<std::string> sources_of(const Session& session, std::uint64_t action
   for (const std::string& profile : {controller_profile(), std::string(gaze_profile)}) {
     for (const Binding& binding : all.suggested[profile]) {
       const bool there =
-          binding.source.starts_with(right_hand) || (binding.source.starts_with(eyes) && all.profile.gaze);
+          binding.source.starts_with(right_hand) ||
+          (binding.source.starts_with(eyes) && all.profile.gaze && all.knobs.at("gaze_active") != 0);
       if (binding.action == action && there && binding.source.starts_with(subaction))
         out.push_back(binding.source);
     }

@@ -157,6 +157,7 @@ const std::map<std::string, double> knobs{
     {"jitter", 0},
     {"wrong_periods", 0},
     {"ignores_rate", 0},
+    {"skips", 0},
     {"image_timeouts", 0},
     {"unfound", 0},
     {"recentre_lead", 0},
@@ -173,6 +174,7 @@ const std::map<std::string, double> knobs{
     {"hold", 1},
     {"gaze_rate", 120},
     {"gaze_age", 0},
+    {"gaze_active", 1},
     {"gaze_valid", 1},
     {"gaze_tracked", 1},
     {"blink_every", 0},
@@ -180,8 +182,8 @@ const std::map<std::string, double> knobs{
 };
 /// Names of script events that set no value of `knobs`.
 const std::vector<std::string> happenings{
-    "focus",    "shown", "off",  "lost",   "lost_now", "instance_lost", "exit",    "unknown",
-    "recentre", "rate",  "drop", "repeat", "hang",     "events_lost",   "untimed", "worn"};
+    "focus", "shown", "off",    "lost", "lost_now",    "instance_lost", "exit", "unknown",    "recentre",
+    "rate",  "drop",  "repeat", "hang", "events_lost", "untimed",       "worn", "rate_untold"};
 
 void check_script(const Profile& profile) {
   for (const ScriptedEvent& event : profile.script) {

@@ -59,6 +59,7 @@ void play(XrSession session, const ScriptedEvent& event) {
   if (name == "events_lost") lose_events(value);
   if (name == "recentre") recentre(session, value);
   if (name == "rate") change_rate(static_cast<float>(value));
+  if (name == "rate_untold") all.profile.rate = static_cast<float>(value);
   if (name == "drop") all.dropped = static_cast<int>(value);
   if (name == "repeat") all.repeats = true;
   if (name == "untimed") all.untimed = static_cast<int>(value);
