@@ -273,6 +273,11 @@ void HeadsetDisplay::clear() {
   playing_ = false;
 }
 
+std::optional<CutCause> HeadsetDisplay::away() const {
+  const HeadsetState state = facts().state;
+  return state == HeadsetState::Focused ? std::nullopt : std::optional(cause_of(state));
+}
+
 std::optional<CutCause> HeadsetDisplay::take_spoilt() { return std::exchange(spoilt_, {}); }
 
 }  // namespace study

@@ -80,6 +80,8 @@ class HeadsetDisplay final : public Display {
 
   /// True if the participant sees pictures and can give input.
   bool focused() const;
+  /// Why the participant sees no pictures or can give no input, by the session's state; none: focused.
+  std::optional<CutCause> away() const;
   /// The cause noted since the last call for which the showing must be cut; none: no cause. Causes: the
   /// session or its focus was lost, the headset was taken off, a picture was not drawn, the poses of the eyes
   /// were unknown, the world's origin moved, or the refresh rate changed.

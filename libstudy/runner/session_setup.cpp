@@ -112,20 +112,7 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
   auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   record_headset(options, *headset, setup, viewing);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
-  setup.request = [display = headset.get()](const std::function<Request()>& others) -> Request {
-    auto spoilt = display->take_spoilt();
-    if (!spoilt) return others();
-    display->clear();
-    do {
-      if (others() == Request::Stop) return Request::Stop;
-      // The loop runs at least once, because the headset may report an unseen frame before the event that
-      // caused it.
-      display->turn();
-    } while (!display->focused());
-    // Adds the cuts that the headset reported during the loop, in which nothing was shown.
-    if (const auto more = display->take_spoilt()) note_cut(spoilt, *more);
-    return *spoilt;
-  };
+  setup.request = headset_requests(*headset);
   if (person) {
     HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);
     setup.participant = std::move(parts.participant);
@@ -172,6 +159,27 @@ bool asks_gaze(const Protocol& protocol) {
   const auto all = all_questions(protocol);
   return std::any_of(all.begin(), all.end(),
                      [](const auto& entry) { return entry.second->id == gaze_question; });
+}
+
+WindowRequest headset_requests(HeadsetDisplay& display) {
+  // Slots within which the headset's software says why its pictures were missing.
+  constexpr int most_unexplained = 10;
+  return [&display](const std::function<Request()>& others) -> Request {
+    auto spoilt = display.take_spoilt();
+    if (!spoilt) return others();
+    display.clear();
+    for (int slots = 0;
+         slots == 0 || !display.focused() || (spoilt == CutCause::NotDrawn && slots < most_unexplained);
+         ++slots) {
+      if (others() == Request::Stop) return Request::Stop;
+      display.turn();
+      const auto away = display.away();
+      if (away && slots < most_unexplained) note_cut(spoilt, *away);
+    }
+    // Adds the cuts that the headset reported during the loop, in which nothing was shown.
+    if (const auto more = display.take_spoilt()) note_cut(spoilt, *more);
+    return *spoilt;
+  };
 }
 
 std::string SessionSetup::departure() const {

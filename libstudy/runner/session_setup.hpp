@@ -5,6 +5,7 @@
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/check/measured_check.hpp"
+#include "libstudy/headset/headset_display.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/runner/cell_stimuli.hpp"
@@ -48,6 +49,10 @@ struct SessionSetup {
 
 /// True if participants are asked for permission to record gaze.
 bool asks_gaze(const Protocol& protocol);
+
+/// Adds to the experimenter's request that a showing is cut which could not be seen in the headset. A cut
+/// turns the headset's slots until pictures can be seen again. The display must outlive the function.
+WindowRequest headset_requests(HeadsetDisplay& display);
 
 /// Makes the parts of a session. `ptpe`: text of the PTPE file for temporal acceleration; none: the paper's
 /// model. `ptpe_place` names this file in errors, `setting_place` the options' solver settings. base::Error

@@ -8,6 +8,11 @@
 
 namespace study {
 
+namespace {
+constexpr const char* rate_mend =
+    "set the refresh rate of the study in the headset's software, and fix it there";
+}
+
 void Repeats::begin_trial() {
   cuts_ = 0;
   require_rate();
@@ -30,20 +35,19 @@ void Repeats::after_cut(CutCause cause) {
 
 void Repeats::require_rate() {
   const Display& display = run_.parts.display;
+  const auto& asked_hz = run_.protocol.headset.refresh_hz;
+  const std::string place = asked_hz ? " at the protocol's refresh_hz = " + base::shortest(*asked_hz) : "";
   const Check check = [this] { poll_requests(run_, false); };
   while (!comes_true(
       run_, [&display] { return display.keeps_rate(); }, rate_within_s, check))
-    wait_for_rate();
+    pause({"the display's refresh rate does not settle" + place, rate_mend});
 }
 
 void Repeats::wait_for_rate() {
-  const Display& display = run_.parts.display;
-  const auto& asked_hz = run_.protocol.headset.refresh_hz;
-  const std::string wanted = asked_hz ? "the protocol's refresh_hz = " + base::shortest(*asked_hz)
-                                      : "the refresh rate with which the session began";
-  pause({"the display runs at " + base::shortest(std::round(100 * display.measured_hz()) / 100) +
+  const double hz = std::round(100 * run_.parts.display.measured_hz()) / 100;
+  pause({"the display's refresh rate changed to " + base::shortest(hz) +
              " Hz, at which the trial cannot be shown",
-         "set it to " + wanted + " in the headset's software"});
+         rate_mend});
 }
 
 void Repeats::require_eyes() {

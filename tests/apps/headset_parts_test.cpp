@@ -4,6 +4,7 @@
 #include <cmath>
 #include <future>
 
+#include "libstudy/headset/flash_guard.hpp"
 #include "libstudy/headset/picture_turns.hpp"
 #include "libstudy/headset/rate_meter.hpp"
 #include "libstudy/headset/views.hpp"
@@ -27,7 +28,7 @@ std::vector<study::RateChange> add_slots(study::RateMeter& meter, std::int64_t& 
   return changes;
 }
 
-constexpr std::int64_t at_90_hz = 11'111'111, at_72_hz = 13'888'889, at_45_hz = 22'222'222;
+constexpr std::int64_t at_90_hz = 11'111'111, at_72_hz = 13'888'889;
 
 TEST(HeadsetRate, IsTheSettledStepAndNeverTheFirst) {
   study::RateMeter meter;
@@ -63,18 +64,83 @@ TEST(HeadsetRate, SlotsThatAreLeftOutOrToldTwiceAreCounted) {
 }
 
 TEST(HeadsetRate, AChangeIsToldOnceWhenItHasSettled) {
-  for (const std::int64_t step_ns : {at_72_hz, at_45_hz}) {
+  study::RateMeter meter;
+  std::int64_t now_ns = 0;
+  add_slots(meter, now_ns, 50, at_90_hz);
+  const auto changes = add_slots(meter, now_ns, 60, at_72_hz);
+  ASSERT_EQ(changes.size(), 1u);
+  EXPECT_NEAR(changes[0].from_hz, 90, 1e-3);
+  EXPECT_NEAR(changes[0].to_hz, 72, 0.5);
+  EXPECT_NEAR(*meter.hz(), 72, 0.5);
+  EXPECT_EQ(meter.off_grid(), 0);
+  EXPECT_EQ(meter.dropped(), 0);
+}
+
+TEST(HeadsetRate, SlotsAtHalfRateAreLeftOutAndNeverAnotherRate) {
+  for (const bool reported : {false, true}) {
     study::RateMeter meter;
     std::int64_t now_ns = 0;
-    add_slots(meter, now_ns, 50, at_90_hz);
-    const auto changes = add_slots(meter, now_ns, 60, step_ns);
-    ASSERT_EQ(changes.size(), 1u);
-    EXPECT_NEAR(changes[0].from_hz, 90, 1e-3);
-    EXPECT_NEAR(changes[0].to_hz, 1e9 / static_cast<double>(step_ns), 0.5);
-    EXPECT_NEAR(*meter.hz(), 1e9 / static_cast<double>(step_ns), 0.5);
+    if (reported) meter.report(90);
+    if (!reported) add_slots(meter, now_ns, 50, at_90_hz);
+    EXPECT_TRUE(add_slots(meter, now_ns, 34, 2 * at_90_hz).empty());
+    ASSERT_TRUE(meter.hz()) << reported;
+    EXPECT_NEAR(*meter.hz(), 90, 1e-3);
+    EXPECT_GT(meter.dropped(), 24);
+    EXPECT_TRUE(add_slots(meter, now_ns, 50, at_90_hz).empty());
     EXPECT_EQ(meter.off_grid(), 0);
-    EXPECT_EQ(meter.dropped(), 0);
   }
+}
+
+TEST(HeadsetRate, OfTheRuntimeHoldsUntilItTellsAnother) {
+  study::RateMeter meter;
+  std::int64_t now_ns = 0;
+  meter.report(90);
+  add_slots(meter, now_ns, 50, at_90_hz);
+  EXPECT_TRUE(add_slots(meter, now_ns, 60, at_72_hz).empty());
+  EXPECT_NEAR(*meter.hz(), 82, 9) << "steps off the grid count as they are";
+  EXPECT_GT(meter.off_grid(), 50);
+  EXPECT_FALSE(meter.contradicted());
+  add_slots(meter, now_ns, 30, at_72_hz);
+  EXPECT_TRUE(meter.contradicted());
+  meter.doubt();
+  EXPECT_TRUE(add_slots(meter, now_ns, 60, at_72_hz).empty()) << "it was the runtime's once";
+  meter.report(72);
+  EXPECT_FALSE(meter.hz());
+  add_slots(meter, now_ns, 30, at_72_hz);
+  EXPECT_NEAR(*meter.hz(), 72, 1e-3);
+}
+
+TEST(HeadsetRate, OfTheRuntimeIsNotBelievedWhereNoStepEverFits) {
+  study::RateMeter meter;
+  std::int64_t now_ns = 0;
+  meter.report(90);
+  add_slots(meter, now_ns, 100, at_72_hz);
+  EXPECT_FALSE(meter.hz());
+  ASSERT_TRUE(meter.contradicted());
+  meter.doubt();
+  EXPECT_TRUE(add_slots(meter, now_ns, 20, at_72_hz).empty());
+  EXPECT_NEAR(*meter.hz(), 72, 1e-3);
+}
+
+TEST(HeadsetFlash, LightFollowsBlackThreeTimesInASecondAtMost) {
+  study::FlashGuard guard;
+  std::vector<std::int64_t> onsets_ns;
+  bool lit = false;
+  for (std::int64_t now_ns = 1; now_ns < 5'000'000'000; now_ns += at_90_hz) {
+    const bool wanted = now_ns / at_90_hz % 4 < 2;
+    const bool shown = guard.admit(now_ns, wanted) && wanted;
+    if (shown && !lit) onsets_ns.push_back(now_ns);
+    lit = shown;
+  }
+  EXPECT_EQ(onsets_ns.size(), 15u);
+  for (std::size_t i = 3; i < onsets_ns.size(); ++i)
+    EXPECT_GE(onsets_ns[i] - onsets_ns[i - 3], 1'000'000'000);
+}
+
+TEST(HeadsetFlash, WhatStaysOnOrComesAndGoesSlowlyIsNeverHeldBack) {
+  study::FlashGuard guard;
+  for (std::int64_t slot = 0; slot < 900; ++slot)
+    EXPECT_TRUE(guard.admit(slot * at_90_hz, slot % 40 < 30 || slot > 400)) << slot;
 }
 
 TEST(HeadsetRate, IsTheDisplaysWhereMostSlotsAreLeftOut) {
