@@ -74,7 +74,6 @@ TEST_F(HeadsetFlashE2e, WhatGoesWrongAgainAndAgainIsShownFourTimesAtMostAndFlash
            {"render/0", "render/1", CutCause::NotDrawn},
            {"orientation/0", "orientation/1", CutCause::Pose},
            {"recentre/5", "", CutCause::Recentred},
-           {"rate/72", "rate/90", CutCause::Rate},
            {"gaze_valid/0", "gaze_valid/1", CutCause::Gaze},
            {"gaze_active/0", "gaze_active/1", CutCause::Gaze}}) {
     const bool tracked = cause == CutCause::Gaze;

@@ -44,7 +44,7 @@ TEST_F(HeadsetShowE2e, TheRateIsMeasuredAndNeverTheFirstPeriod) {
               {"rate        90.00 Hz measured from predicted times; 90 Hz reported by the runtime\n"});
   EXPECT_THAT(calls(), Not(HasSubstr("xrGetDisplayRefreshRateFB")));
   expect_says("without=XR_FB_display_refresh_rate;rate=20", {"not known: too few steps"});
-  expect_says("rates=90;rate=90;skips=1", {"rate        90.00 Hz measured", "dropped     16 slots"});
+  expect_says("rates=90;rate=90;at=30:skips/1", {"rate        90.00 Hz measured", "dropped     9 slots"});
   // drop/3 skips three slots. The repeated time skips a fourth, the slot that should have come then.
   expect_says("at=30:drop/3,35:repeat",
               {"rate        90.00 Hz", "dropped     4 slots; 1 predicted times repeated"});

@@ -213,7 +213,8 @@ TEST_P(LabPlan, PutsPracticeRepeatsAndCatchesInTheirPlaces) {
     }
     for (std::size_t block = 0; block < protocol.blocks.size(); ++block) {
       const auto& planned = protocol.blocks[block];
-      if (planned.count == 0) continue;
+      const bool tries = planned.kind == study::BlockKind::GazeValidation;
+      if (planned.count == 0 || tries) continue;
       EXPECT_EQ(count[static_cast<int>(block)], planned.count) << planned.id;
     }
   }
@@ -266,11 +267,11 @@ INSTANTIATE_TEST_SUITE_P(Plans, GoldenPlan,
                                          Golden{"task1", "latin", 7, 30, "35dc3fb51c10179f"},
                                          Golden{"task1", "williams", 7, 100, "80f6e1289ae71149"},
                                          Golden{"task1", "paper_random", 7, 0, "0ddd76f466356acb"},
-                                         Golden{"task1_lab", "", 9223372036854775807u, 3, "8220fcabe94b8412"},
+                                         Golden{"task1_lab", "", 9223372036854775807u, 3, "431222734aed0f12"},
                                          Golden{"task2", "", 7, 0, "9e41aa98dd4e585c"},
                                          Golden{"task2", "", 7, 95, "506671e72e501542"},
                                          Golden{"task2", "paper_random", 7, 0, "70e08048172d7673"},
-                                         Golden{"task2_lab", "", 7, 4, "bb3f740fda5ed94a"},
+                                         Golden{"task2_lab", "", 7, 4, "cc5c8d03bd3ee2d6"},
                                          Golden{"demo", "", 7, 0, "1db73a21b4545640"}));
 
 // An independent implementation of Philox and Durstenfeld's shuffle computed the expected order.
