@@ -29,5 +29,12 @@ TEST(NominalRefresh, OfOtherRatesIsTheToldOneOrTheRateItself) {
   EXPECT_EQ(nominal_refresh(59.6), 59.6);
 }
 
+TEST(NominalRefresh, AMeasuredRateIsTheWholeOneWithin100Ppm) {
+  EXPECT_EQ(nominal_refresh(88.0000009), 88);
+  EXPECT_EQ(nominal_refresh(88.008, 88), 88);
+  EXPECT_EQ(nominal_refresh(88.01), 88.01);
+  EXPECT_EQ(nominal_refresh(87.31000001, 87.31), 87.31) << "the only rate that is listed";
+}
+
 }  // namespace
 }  // namespace study
