@@ -252,7 +252,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "sees no edge"},
       {"headset", "world_scale", "number", "[0.01, 100]", "1", "metres of the room for a metre of the scene"},
       {"headset", "refresh_hz", "number", "[10, 1000]", "as it is",
-       "requested from the headset, Hz; no session begins at another rate"},
+       "requested from the headset, Hz; no session begins and no trial is shown at another rate"},
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "
