@@ -273,11 +273,19 @@ void HeadsetDisplay::clear() {
   playing_ = false;
 }
 
-std::optional<CutCause> HeadsetDisplay::away() const {
-  const HeadsetState state = facts().state;
-  return state == HeadsetState::Focused ? std::nullopt : std::optional(cause_of(state));
-}
-
 std::optional<CutCause> HeadsetDisplay::take_spoilt() { return std::exchange(spoilt_, {}); }
+
+std::optional<CutCause> HeadsetDisplay::take_explained() {
+  constexpr int most_unexplained = 10;
+  std::optional<CutCause> cause = take_spoilt();
+  if (cause) clear();
+  for (int slots = 0; slots < most_unexplained; ++slots) {
+    if (cause != CutCause::NotDrawn && cause != CutCause::Focus) break;
+    turn();
+    const HeadsetState state = facts().state;
+    if (state != HeadsetState::Focused) note_cut(cause, cause_of(state));
+  }
+  return cause;
+}
 
 }  // namespace study

@@ -80,12 +80,13 @@ class HeadsetDisplay final : public Display {
 
   /// True if the participant sees pictures and can give input.
   bool focused() const;
-  /// Why the participant sees no pictures or can give no input, by the session's state; none: focused.
-  std::optional<CutCause> away() const;
   /// The cause noted since the last call for which the showing must be cut; none: no cause. Causes: the
   /// session or its focus was lost, the headset was taken off, a picture was not drawn, the poses of the eyes
   /// were unknown, the world's origin moved, or the refresh rate changed.
   std::optional<CutCause> take_spoilt();
+  /// As take_spoilt(), but first turns up to 10 slots, all black, if the session's state may yet explain the
+  /// cause: pictures are missing and the focus is lost also where the headset is taken off.
+  std::optional<CutCause> take_explained();
   /// Lines for the log since the last call: the session was lost, a new session was made, or the refresh rate
   /// changed.
   std::vector<std::string> take_news() { return std::exchange(news_, {}); }

@@ -162,20 +162,15 @@ bool asks_gaze(const Protocol& protocol) {
 }
 
 WindowRequest headset_requests(HeadsetDisplay& display) {
-  // Slots within which the headset's software says why its pictures were missing.
-  constexpr int most_unexplained = 10;
   return [&display](const std::function<Request()>& others) -> Request {
-    auto spoilt = display.take_spoilt();
+    auto spoilt = display.take_explained();
     if (!spoilt) return others();
-    display.clear();
-    for (int slots = 0;
-         slots == 0 || !display.focused() || (spoilt == CutCause::NotDrawn && slots < most_unexplained);
-         ++slots) {
+    do {
       if (others() == Request::Stop) return Request::Stop;
+      // The loop runs at least once, because the headset may report an unseen frame before the event that
+      // caused it.
       display.turn();
-      const auto away = display.away();
-      if (away && slots < most_unexplained) note_cut(spoilt, *away);
-    }
+    } while (!display.focused());
     // Adds the cuts that the headset reported during the loop, in which nothing was shown.
     if (const auto more = display.take_spoilt()) note_cut(spoilt, *more);
     return *spoilt;

@@ -57,7 +57,7 @@ class HeadsetSurface final : public PageSurface {
   void end() override;
   void show() override;
   void show_black() override;
-  std::optional<CutCause> take_unseen() override { return display_.take_spoilt(); }
+  std::optional<CutCause> take_unseen() override { return display_.take_explained(); }
   bool unseen() const override { return !display_.focused(); }
 
  private:
