@@ -155,6 +155,7 @@ Played play_rest(const ResumeOptions& resume) {
         study::make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
     setup.warnings = warnings;
     open_mirror(options, setup);
+    tell_of_patch(setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);
     check_unchanged(store, run, setup, place);
     played.end = std::max(played.end, play_run(store, run, protocol, setup, options));

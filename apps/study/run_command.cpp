@@ -211,6 +211,7 @@ void run(RunCommand& command) {
   study::SessionSetup setup = study::make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
   open_mirror(command.play, setup);
+  tell_of_patch(setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
   // The stored observer (simulated participant) is written with the defaults of this version, because another
@@ -328,6 +329,9 @@ void add_run_command(CLI::App& app) {
       "Bake to play (vip-study bake), or folder of bakes (vip-study bake --protocol), of which stimuli "
       "without a bake run live; without this option: live fluid, or nothing with --display none");
   add_backend(sub, command->run.backend, "Computes live fluid");
+  sub.add_flag("--light-patch", command->run.light_patch,
+               "Draw a small square in the lower left corner that is white and black with every other frame "
+               "of a stimulus, for a light sensor that covers it (vip-study light); kept with the sessions");
   sub.add_option("--ptpe", command->ptpe, "PTPE file to use; stored with the sessions");
   sub.add_option(
          "--setting", command->settings,

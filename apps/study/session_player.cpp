@@ -88,6 +88,12 @@ void open_mirror(const PlayOptions& options, const study::SessionSetup& setup) {
   setup.open_mirror(options.mirror_reveal);
 }
 
+void tell_of_patch(const study::SessionSetup& setup) {
+  if (setup.light_patch.empty()) return;
+  std::fprintf(stderr, "light patch: %s; it flashes, so cover it with the sensor: nobody may see it\n",
+               setup.light_patch.c_str());
+}
+
 void open_markers(PlayOptions& options, bool virtual_clock) {
   if (options.markers.empty()) return;
   if (virtual_clock)

@@ -51,6 +51,9 @@ struct PlayOptions {
 /// Opens options.markers unless they are open. base::Error if one cannot be reached, or on a virtual clock.
 void open_markers(PlayOptions& options, bool virtual_clock);
 
+/// Says on standard error where the patch for a light sensor is, if the session has one.
+void tell_of_patch(const study::SessionSetup& setup);
+
 /// Opens the experimenter's second window if options.mirror is set. base::Error if there is no participant's
 /// window or if the second window cannot be opened.
 void open_mirror(const PlayOptions& options, const study::SessionSetup& setup);

@@ -44,7 +44,8 @@ CellStimuli::CellStimuli(const RunOptions& options, const Protocol& protocol, co
     : protocol_(protocol),
       bakes_(std::move(bakes)),
       settings_(std::move(settings)),
-      shown_(options.display != "none") {
+      shown_(options.display != "none"),
+      with_patch_(options.light_patch) {
   choice_.content_step_s = protocol.content.content_step_s;
   choice_.paint_temperature = protocol.design.paint_temperature;
   choice_.backend = options.backend;
@@ -56,7 +57,7 @@ CellStimuli::CellStimuli(const RunOptions& options, const Protocol& protocol, co
       sim::check_ways(sim::read_scene(base::find_input(cell.stimulus.scene)),
                       sim::parse_n_star(cell.stimulus.n_star));
   check_settings_live(protocol);
-  description_ = describe(protocol);
+  description_ = describe(protocol) + (with_patch_ ? ", with a light patch" : "");
 }
 
 /// Refuses a solver setting for a cell that is not computed live: a bake contains its setting, and --display
@@ -131,11 +132,15 @@ Stimulus& CellStimuli::stimulus(const Cell& cell) {
   if (made_ != wanted) {
     made_.reset();
     former_guards_ = guards();
+    patch_.reset();
     stimulus_.reset();
     stimulus_ = make(cell, wanted);
+    if (with_patch_) patch_ = std::make_unique<LightPatch>(*stimulus_);
     made_ = wanted;
   }
-  return *stimulus_;
+  if (!patch_) return *stimulus_;
+  patch_->begin_showing();
+  return *patch_;
 }
 
 }  // namespace study

@@ -9,11 +9,14 @@
 #include "libstudy/session/session.hpp"
 #include "libstudy/stimulus/bakes/session_bakes.hpp"
 #include "libstudy/stimulus/fluid_stimulus.hpp"
+#include "libstudy/stimulus/light_patch.hpp"
 
 namespace study {
 
 /// Shows a cell from its bake if it has one. A cell without a bake is live fluid, or with --display none an
-/// empty stimulus. Uses the stimulus of the last cell again if the next cell needs the same stimulus.
+/// empty stimulus. RunOptions::light_patch: draws the patch for a light sensor over each; a call of
+/// stimulus() then begins a showing. Uses the stimulus of the last cell again if the next cell needs the same
+/// stimulus.
 class CellStimuli final : public StimulusSource {
  public:
   /// base::Error if a solver setting is for a cell that is not computed live. If stimuli are shown (not
@@ -58,7 +61,9 @@ class CellStimuli final : public StimulusSource {
   std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<Stimulus> stimulus_;
-  sim::GuardCounts former_guards_;  ///< guards() of all stimuli before the current stimulus, summed
+  bool with_patch_ = false;
+  std::unique_ptr<LightPatch> patch_;  ///< over stimulus_; null: no patch, or no stimulus yet
+  sim::GuardCounts former_guards_;     ///< guards() of all stimuli before the current stimulus, summed
 };
 
 }  // namespace study

@@ -72,6 +72,7 @@ std::string format_run_options(const RunOptions& options) {
                   {"station", options.station},
                   {"screen_width_mm", options.screen_width_mm},
                   {"viewing_distance_mm", options.viewing_distance_mm}};
+  if (options.light_patch) json["light_patch"] = true;
   for (const std::string& text : options.settings)
     json["settings"].push_back({{"sha256", base::sha256_hex(text)}, {"text", text}});
   return json.dump();
@@ -96,6 +97,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.answer = json.value("answer", "");
     options.gaze = json.at("gaze");
     options.ignore_presence = json.value("ignore_presence", false);
+    options.light_patch = json.value("light_patch", false);
     options.accept_slow = json.value("accept_slow", false);
     options.station = json.at("station");
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));

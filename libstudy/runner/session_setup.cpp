@@ -1,5 +1,7 @@
 #include "libstudy/runner/session_setup.hpp"
 
+#include <fmt/format.h>
+
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "libstudy/display/null.hpp"
@@ -9,6 +11,7 @@
 #include "libstudy/pages/headset/headset_person.hpp"
 #include "libstudy/stimulus/cell_features.hpp"
 #include "libstudy/stimulus/headless_display.hpp"
+#include "libstudy/stimulus/light_patch.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -48,6 +51,12 @@ void check_together(const RunOptions& options, const Protocol& protocol) {
   if (options.gaze == "tracked" && options.display != "openxr" && options.observer.empty())
     throw base::Error("--gaze tracked", "needs an eye tracker, and only a headset's can be read",
                       "use --gaze fixed or mouse; with an --observer, tracked is allowed");
+  if (options.light_patch && options.display == "none")
+    throw base::Error("--light-patch", "needs a display, and with --display none nothing is drawn",
+                      "use --display window, openxr or headless, or leave it out");
+  if (options.light_patch && options.display == "openxr" && options.observer.empty())
+    throw base::Error("--light-patch", "would flash at the person: a sensor covers it in one eye at most",
+                      "measure the headset with an --observer and the sensor at a lens, or leave it out");
   if (protocol.fixation && options.display != "none" && options.gaze != "fixed")
     throw base::Error("--gaze " + options.gaze, "contradicts gaze = \"fixation\" of the protocol",
                       "use --gaze fixed, or gaze = \"free\" in the protocol");
@@ -124,6 +133,15 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
     mirror = open_headset_mirror(*display, reveal);
   };
   setup.display = std::move(headset);
+}
+
+/// Where the patch for a light sensor is, and its size. base::Error if it would be too large.
+std::string patch_words(const RunOptions& options, const base::PictureSize& size) {
+  if (options.display == "openxr")
+    return fmt::format("{:g} degrees, in the lower left of both eyes' pictures", eye_patch_deg);
+  return describe_patch(size.width, size.height, options.screen_width_mm.value_or(0),
+                        options.viewing_distance_mm.value_or(0)) +
+         ", in the lower left corner";
 }
 
 /// Picture features for the frames observer: measured on live pictures before the session, or taken from the
@@ -216,6 +234,7 @@ SessionSetup make_session_setup(const RunOptions& options, const Protocol& proto
   } else {
     setup.display = make_display(options);
   }
+  if (options.light_patch) setup.light_patch = patch_words(options, size);
   const stats::PtpeModel model = model_of(ptpe, ptpe_place, protocol);
   SessionLook look{{}, size};
   look.common.model = model;

@@ -38,6 +38,7 @@ struct SessionSetup {
   std::function<void(bool reveal)> open_mirror;
   std::function<void()> poll;         ///< handles events of the window; empty: no window
   std::optional<ScreenFacts> screen;  ///< facts of the window's screen; none: no window
+  std::string light_patch;            ///< size and place of the patch for a light sensor; empty: none
   std::vector<FramedScene> scenes;    ///< the scenes on the display; empty for --display openxr and none
   std::vector<std::string> warnings;  ///< warnings about clock and database (warn_of_station())
   MeasuredReport rates;               ///< measured rates of live cells; no cells: nothing was measured
