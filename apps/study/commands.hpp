@@ -29,6 +29,7 @@ void add_import_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 void add_markers_command(CLI::App& app);
+void add_light_command(CLI::App& app);
 
 /// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);

@@ -27,6 +27,8 @@
 
 namespace study {
 
+struct LightEvidence;  // light_evidence.hpp
+
 class AnswerJournal;
 
 /// base::Error unless a new participant code has 1 to 32 of the characters A-Z a-z 0-9 _ and - and begins
@@ -244,6 +246,8 @@ class Store {
   void add_markers(std::int64_t session, std::span<const MarkerRecord> markers);
   /// The receivers to which markers of this session were sent so far.
   std::vector<std::string> marker_receivers(std::int64_t session);
+  /// Commits what a sensor's log says about presentations of a session, in place of what an earlier log said.
+  void add_light(std::int64_t session, std::span<const LightEvidence> evidence);
   /// Commits a presentation's last frames and its timing verdict. If the trial had no schedule (nominal mean
   /// 0), the verdict is stored only if the trial was cut because it overran.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,

@@ -166,6 +166,7 @@ const Rooms rooms{
     {"libstudy/sweep", 1},
     {"libstudy/pacing", 2},
     {"libstudy/sweep/run", 2},
+    {"libstudy/light", 3},
     {"libstudy/markers", 3},
     {"libstudy/protocol", 3},
     {"libstudy/design", 4},

@@ -113,7 +113,7 @@ TEST(AnswerJournal, FollowsEveryTableButThoseItNames) {
     if (!journal::find_table(row.text(0))) left.insert(row.text(0));
   }
   EXPECT_THAT(left, ::testing::ElementsAre("chore", "export", "export_person", "frame", "gaze",
-                                           "gaze_validation", "head", "marker", "slot"));
+                                           "gaze_validation", "head", "light", "marker", "slot"));
 }
 
 TEST(AnswerJournal, EqualsTheDatabaseAfterAllThatHappensInASession) {

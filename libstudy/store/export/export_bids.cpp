@@ -30,7 +30,9 @@ namespace {
 constexpr const char* events_sql =
     "SELECT p.start_ns, p.end_ns, u.kind, t.position, p.attempt, p.interval, p.state, c.scene, c.method, "
     "c.n_star, c.mean_fps, c.sd_fps, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.longest_ms, "
-    "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, w.counts, w.why_not, "
+    "p.late_frames, p.verdict, "
+    "(SELECT grade FROM evidence v WHERE v.presentation_id = p.presentation_id), t.excluded IS NOT NULL, "
+    "w.counts, w.why_not, "
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), p.gaze_source, u.unit_id, "
     "t.second_cell IS NOT NULL, c.effects";
@@ -68,7 +70,7 @@ Json event_columns() {
       {"longest_ms", described("longest interval between frames", "ms")},
       {"late_frames", described("frames beyond the protocol's bound")},
       {"verdict", described("timing: pass, degraded or fail; n/a: no schedule to judge by")},
-      {"grade", described("evidence: A photodiode, B display, C compositor, D submit")},
+      {"grade", described(showing_grade_meaning)},
       {"excluded", described("1: excluded by the experimenter")},
       {"counts", described(showing_counts_meaning)},
       {"why_not", described(showing_why_not_meaning)},

@@ -50,6 +50,11 @@ inline constexpr const char* showing_why_not_meaning =
     "set aside (to be shown again), cut short, shown again (after an interruption), not answered, excluded "
     "(by "
     "the experimenter) or practice; empty: the showing counts";
+/// Meaning of a showing's grade of evidence in the descriptions of exports.
+inline constexpr const char* showing_grade_meaning =
+    "evidence: A photodiode, B display, C compositor, D submit; raised by the log of a light sensor "
+    "(light.csv); "
+    "empty: no frames were recorded";
 /// Meanings of a showing's columns `active_fraction` and `tau_fps` in the descriptions of exports.
 inline constexpr const char* showing_active_meaning =
     "share of particles that the solver solved, mean over the frames; empty: not measured, or a method that "

@@ -38,6 +38,7 @@ constexpr const char* of_presentation =
 constexpr Dependant dependants[] = {
     {"permission_change", of_session, 3},
     {"marker", of_session, 10},
+    {"light", of_presentation, 11},
     {"gaze_validation", of_session, 5},
     {"gaze", of_presentation, 3},
     {"head", of_presentation, 5},

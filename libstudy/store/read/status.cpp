@@ -55,12 +55,12 @@ std::string certificate_sql(FpsMean mean, const std::string& of) {
          " - c.mean_fps)), avg(p.sd_fps), max(abs(p.sd_fps - c.sd_fps)), "
          "sum(p.frames), sum(p.late_frames), max(p.worst_late_ms), "
          "count(*) FILTER (WHERE p.verdict = 'pass'), count(*) FILTER (WHERE p.verdict = 'degraded'), "
-         "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade), coalesce(c.effects, "
+         "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT e.grade), coalesce(c.effects, "
          "''), coalesce(c.levels, ''), coalesce(c.timing, ''), coalesce(avg(p.p99_ms), 0), "
          "max(p.longest_ms), coalesce(avg(p.hitches), 0), avg(p.animation_error_ms) "
          "FROM presentation p JOIN trial t USING (trial_id) "
          "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
-         "JOIN showing w USING (presentation_id) WHERE " +
+         "JOIN showing w USING (presentation_id) JOIN evidence e USING (presentation_id) WHERE " +
          of +
          " = ? AND w.judged AND p.frames IS NOT NULL "
          "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";

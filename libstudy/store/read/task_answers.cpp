@@ -116,7 +116,8 @@ constexpr const char* trials_sql =
     "WHERE t.session_id = ? ORDER BY t.position";
 
 constexpr const char* showing_sql =
-    "SELECT verdict, grade, reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames, "
+    "SELECT verdict, (SELECT grade FROM evidence v WHERE v.presentation_id = presentation.presentation_id), "
+    "reason, frames, mean_fps, mean_arithmetic_fps, sd_fps, longest_ms, late_frames, "
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = presentation.presentation_id), "
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = presentation.presentation_id) "
     "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
