@@ -14,6 +14,7 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "apps/study/session_player.hpp"
 #include "libstudy/console/certificate.hpp"
 #include "libstudy/light/light_edges.hpp"
 #include "libstudy/light/sensor_log.hpp"
