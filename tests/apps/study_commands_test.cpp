@@ -219,7 +219,7 @@ TEST_F(StudyCommandsE2e, FullInTheMiddleKeepsEveryAnswer) {
 
 TEST_F(StudyCommandsE2e, AFileSizeLimitKeepsEveryAnswer) {
   const auto limit = [] {
-    const rlimit bytes{250'000, 250'000};
+    const rlimit bytes{300'000, 300'000};
     ::setrlimit(RLIMIT_FSIZE, &bytes);
   };
   const Ended full = run({"--participants", "4"}, limit);
