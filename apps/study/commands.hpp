@@ -1,10 +1,13 @@
 #pragma once
 /// The commands of vip-study, one per source file; each function adds its command to the program.
 
+#include <array>
+#include <string>
+
 namespace CLI {
 class App;
 class Option;
-}
+}  // namespace CLI
 namespace study {
 struct MarkerPulse;
 }
@@ -30,10 +33,17 @@ void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 void add_markers_command(CLI::App& app);
 void add_light_command(CLI::App& app);
+void add_gaze_command(CLI::App& app);
 
 /// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);
 /// Adds --marker-pulse-ms. receiver: the option that it needs.
 void add_marker_pulse(CLI::App& command, CLI::Option* receiver, study::MarkerPulse& pulse);
+/// Why a text is no value of --gaze; empty: it is one.
+std::string gaze_source_problem(const std::string& text);
+/// Adds --gaze-turn, the fixed rotation of an outside eye tracker's rays (study::rotation_of()).
+void add_gaze_turn(CLI::App& command, std::array<double, 3>& turn_deg);
+/// Says on the standard error if gaze from an outside eye tracker crosses a network.
+void tell_of_network(const std::string& gaze);
 
 }  // namespace apps

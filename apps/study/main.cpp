@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   apps::add_certify_command(*app);
   apps::add_bake_command(*app);
   apps::add_markers_command(*app);
+  apps::add_gaze_command(*app);
   apps::add_light_command(*app);
   apps::add_run_command(*app);
   apps::add_resume_command(*app);

@@ -153,6 +153,7 @@ Played play_rest(const ResumeOptions& resume) {
     warn_of_missing_markers(store, run, options);
     study::SessionSetup setup =
         study::make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
+    tell_of_network(chosen.gaze);
     setup.warnings = warnings;
     open_mirror(options, setup);
     tell_of_patch(setup);

@@ -16,6 +16,7 @@
 #include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/trackers/eye_tracker.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/machine.hpp"
@@ -124,7 +125,8 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   session.time_zone = base::local_time_zone();
   session.ptpe = ptpe;
   const bool fixation = protocol.fixation && command.run.gaze == "fixed";
-  session.gaze_source = fixation ? "fixation" : command.run.gaze;
+  const bool outside = study::is_outside_tracker(command.run.gaze);
+  session.gaze_source = fixation ? "fixation" : outside ? "tracked" : command.run.gaze;
   session.station = command.run.station;
   session.screen_width_mm = command.run.screen_width_mm;
   session.viewing_distance_mm = command.run.viewing_distance_mm;
@@ -217,6 +219,7 @@ void run(RunCommand& command) {
   // The stored observer (simulated participant) is written with the defaults of this version, because another
   // version may have other defaults.
   command.run.observer = setup.participant->simulated().value_or("");
+  tell_of_network(command.run.gaze);
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty())
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
@@ -307,8 +310,10 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--gaze", command->run.gaze,
                  "Where the participant is assumed to look: the middle of the picture, the mouse, the head's "
                  "direction, the headset's eye tracker (recorded if gaze_kept is answered with yes), or not "
-                 "known; tracked without a headset: an observer's gaze, as if a tracker had measured it")
-      ->check(CLI::IsMember({"fixed", "mouse", "head", "tracked", "none"}));
+                 "known; tracked without a headset: an observer's gaze, as if a tracker had measured it. "
+                 "tcp:[HOST:]PORT or lsl:NAME (Lab Streaming Layer): an eye tracker outside OpenXR")
+      ->check(&gaze_source_problem);
+  add_gaze_turn(sub, command->run.gaze_turn_deg);
   sub.add_option("--station", command->run.station,
                  "Name of the station, kept with the sessions. A number at its end, 2/5 or \"lab2 2/5\" for "
                  "station 2 of 5, gives the station its own share of the assignment and its own orders")

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,16 @@ struct GazeSample {
   std::optional<GazeRay> ray{};           ///< none: not valid, or the source has no rays
 };
 
+/// A measured offset of the clock of an eye tracker outside the headset's software.
+struct TrackerClock {
+  std::string source;                ///< where its samples come from, as --gaze names it
+  std::string device;                ///< the tracker's name, as its sender gives it
+  std::array<double, 3> turn_deg{};  ///< fixed rotation of its rays: to the left, up, leaning to the left
+  std::int64_t clock_ns = 0;         ///< when it was measured, on the computer's clock (CLOCK_MONOTONIC)
+  std::int64_t offset_ns = 0;        ///< the computer's clock minus the tracker's
+  std::int64_t round_trip_ns = 0;    ///< of the exchange; the offset is right within half of it
+};
+
 /// A source of gaze samples, which arrive at the rate of the device. Calls come from the session's thread; a
 /// device with its own thread buffers its samples until take().
 class GazeSource {
@@ -45,6 +56,14 @@ class GazeSource {
   virtual std::vector<GazeSample> take() = 0;
   /// Stops buffering and discards the samples that were not taken.
   virtual void stop() = 0;
+  /// The newest measured offset of the device's clock, and those measured since the last call; none if the
+  /// device gives times of the session's clock.
+  virtual std::optional<TrackerClock> clock() { return {}; }
+  virtual std::vector<TrackerClock> take_clocks() { return {}; }
+  /// Events of the source since the last call, in words for the log.
+  virtual std::vector<std::string> take_gaze_news() { return {}; }
+  /// Why no usable samples come, in words; empty: not known, or the eyes are not seen.
+  virtual std::string trouble() { return ""; }
 };
 
 }  // namespace study

@@ -71,6 +71,7 @@ GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin) {
   if (eyes && record.input.gaze) {
     sample.device_ns = record.input.gaze->sampled_ns;
     sample.sampled_ns = sample.device_ns.value_or(sample.sampled_ns);
+    if (record.input.gaze->device_ns) sample.device_ns = record.input.gaze->device_ns;
   }
   if (!pose || !head.turn_valid) return sample;
   const Triple direction = wide(direction_of(*pose)), place = wide(pose->place_m), from = wide(head.place_m);
@@ -96,8 +97,14 @@ std::optional<double> ipd_of(const EyeViews& views) {
 }
 
 void HeadsetRecorder::drain() {
-  for (const HeadsetRecord& record : display_.take_for_record()) {
-    if (allowed_) add_gaze(record);
+  const std::vector<HeadsetRecord> records = display_.take_for_record();
+  if (outside_) {
+    const std::vector<TrackedGaze> samples = outside_->take();
+    for (const HeadsetRecord& record : eyes_.join(records, samples))
+      gaze_.push_back(gaze_of(record, GazeOrigin::Tracker));
+  }
+  for (const HeadsetRecord& record : records) {
+    if (allowed_ && !outside_) add_gaze(record);
     const HeadsetSlot& slot = record.slot;
     slots_.push_back({slot.predicted_ns, slot.period_ns, slot.should_render, {}, 0});
     if (with_heads_) slots_.back().head = head_of(record.input.head);
@@ -126,6 +133,7 @@ void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
 void HeadsetRecorder::start() {
   drain();
   allowed_ = true;
+  if (outside_) outside_->start();
 }
 
 std::vector<GazeSample> HeadsetRecorder::take() {
@@ -136,6 +144,19 @@ std::vector<GazeSample> HeadsetRecorder::take() {
 void HeadsetRecorder::stop() {
   allowed_ = false;
   gaze_.clear();
+  if (outside_) outside_->stop();
+}
+
+std::optional<TrackerClock> HeadsetRecorder::clock() {
+  return outside_ ? std::optional(outside_->clock()) : std::nullopt;
+}
+
+std::vector<TrackerClock> HeadsetRecorder::take_clocks() {
+  return outside_ ? outside_->take_clocks() : std::vector<TrackerClock>();
+}
+
+std::vector<std::string> HeadsetRecorder::take_gaze_news() {
+  return outside_ ? outside_->take_news() : std::vector<std::string>();
 }
 
 HeadsetFacts HeadsetRecorder::facts() const {
@@ -184,8 +205,9 @@ std::optional<double> HeadsetRecorder::ipd_mm() { return ipd_of(display_.facts()
 
 std::optional<RoomRay> HeadsetRecorder::ray() {
   drain();
-  if (!newest_) return {};
-  const HeadsetPose* const pose = followed(*newest_, allowed_ && origin_ == GazeOrigin::Tracker);
+  const std::optional<HeadsetRecord> newest = outside_ ? eyes_.newest() : newest_;
+  if (!newest) return {};
+  const HeadsetPose* const pose = followed(*newest, allowed_ && origin_ == GazeOrigin::Tracker);
   if (!pose || !pose->valid()) return {};
   Triple place = wide(pose->place_m);
   for (double& along : place) along /= display_.rules().world_scale;

@@ -3,13 +3,16 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/display/gaze.hpp"
 #include "libstudy/display/headset.hpp"
 #include "libstudy/headset/headset_display.hpp"
+#include "libstudy/headset/outside_eyes.hpp"
 #include "libstudy/stimulus/framing.hpp"
 
 namespace study {
@@ -22,15 +25,24 @@ namespace study {
 /// Makes one sample for each sample time that the runtime reports, or one per slot if it reports no times. A
 /// sample of lost eyes without a new reported time has no device time. Its time is the slot's time minus the
 /// largest lag reported so far, but not before the last sample.
+///
+/// With an eye tracker outside OpenXR, makes one sample for each sample of that tracker instead.
 class HeadsetRecorder final : public GazeSource, public SlotSource {
  public:
   /// origin: Head, or Tracker for a display made with HeadsetChoice::eye_gaze.
   HeadsetRecorder(HeadsetDisplay& display, GazeOrigin origin) : display_(display), origin_(origin) {}
+  /// Takes the gaze from an eye tracker outside OpenXR.
+  HeadsetRecorder(HeadsetDisplay& display, std::shared_ptr<EyeTracker> outside)
+      : display_(display), origin_(GazeOrigin::Tracker), outside_(std::move(outside)) {}
 
   GazeOrigin origin() const override { return origin_; }
   void start() override;
   std::vector<GazeSample> take() override;
   void stop() override;
+  std::optional<TrackerClock> clock() override;
+  std::vector<TrackerClock> take_clocks() override;
+  std::vector<std::string> take_gaze_news() override;
+  std::string trouble() override { return outside_ ? outside_->trouble() : ""; }
 
   HeadsetFacts facts() const override;
   void start_slots(bool with_heads) override;
@@ -49,6 +61,8 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
 
   HeadsetDisplay& display_;
   GazeOrigin origin_;
+  std::shared_ptr<EyeTracker> outside_;  ///< null: the gaze is the runtime's
+  OutsideEyes eyes_;
   bool allowed_ = false, with_heads_ = false;
   std::vector<GazeSample> gaze_;
   std::vector<SlotRecord> slots_;

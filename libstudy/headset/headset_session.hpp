@@ -54,6 +54,8 @@ struct HeadsetEvent {
 struct HeadsetGaze {
   /// Time of the sample on the session's clock; none if the runtime does not report it.
   std::optional<std::int64_t> sampled_ns;
+  /// Time of the sample on the clock of an eye tracker outside OpenXR; none: the runtime's tracker.
+  std::optional<std::int64_t> device_ns{};
   HeadsetPose ray;  ///< an orientation that is valid but not tracked is an estimate of the runtime
 };
 

@@ -62,7 +62,18 @@ HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elev
   return page;
 }
 
+std::vector<HeadsetRecord> HeadsetTargets::take_records() {
+  std::vector<HeadsetRecord> records = display_.take_for_record();
+  return outside_ ? eyes_.join(records, outside_->take()) : records;
+}
+
+void HeadsetTargets::end() {
+  display_.hide_page();
+  if (outside_) outside_->stop();
+}
+
 void HeadsetTargets::begin() {
+  if (outside_) outside_->start();
   display_.take_for_record();
   for (int turn = 0; turn < most_turns; ++turn) {
     display_.turn();
@@ -108,7 +119,7 @@ std::optional<std::vector<TargetSample>> HeadsetTargets::look_once(const Headset
   display_.show_page(page);
   const std::int64_t from_ns = display_.now_ns() + std::llround(1e9 * settle_s);
   const std::int64_t until_ns = from_ns + std::llround(1e9 * sample_s);
-  display_.take_for_record();
+  take_records();
   std::vector<TargetSample> samples;
   std::int64_t last_ns = 0;
   while (display_.now_ns() < until_ns) {
@@ -120,7 +131,7 @@ std::optional<std::vector<TargetSample>> HeadsetTargets::look_once(const Headset
       return {};
     }
     display_.turn();
-    for (const HeadsetRecord& record : display_.take_for_record()) {
+    for (const HeadsetRecord& record : take_records()) {
       if (record.slot.predicted_ns < from_ns) continue;
       const auto sampled_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
       if (sampled_ns && *sampled_ns <= last_ns) continue;  // a sample that was already counted

@@ -1,11 +1,7 @@
-/// Markers as a stream of the Lab Streaming Layer. liblsl is opened at run time: programs also start without
-/// it.
-
-#include <dlfcn.h>
-
-#include <cstdlib>
+/// Markers as a stream of the Lab Streaming Layer.
 
 #include "libstudy/base/clock.hpp"
+#include "libstudy/markers/lsl_library.hpp"
 #include "libstudy/markers/receiver.hpp"
 #include "stats/base/error.hpp"
 
@@ -30,40 +26,17 @@ constexpr int format_string = 3;      // cft_string
 constexpr double irregular_rate = 0;  // LSL_IRREGULAR_RATE
 constexpr std::int32_t buffered = 360;
 
-void* open_library(const std::string& place) {
-  const char* other = std::getenv("VIP_LSL_LIBRARY");
-  if (other && *other) {
-    if (void* library = ::dlopen(other, RTLD_NOW | RTLD_LOCAL)) return library;
-    throw base::Error(place, std::string("VIP_LSL_LIBRARY names ") + other + ", which cannot be loaded",
-                      "correct its path, or unset VIP_LSL_LIBRARY");
-  }
-  for (const char* name : {"liblsl.so.2", "liblsl.so.1", "liblsl.so", "liblsl64.so"}) {
-    if (void* library = ::dlopen(name, RTLD_NOW | RTLD_LOCAL)) return library;
-  }
-  throw base::Error(
-      place, "there is no liblsl on this machine",
-      "install liblsl from github.com/sccn/liblsl/releases, or name the library in VIP_LSL_LIBRARY");
-}
-
-template <class F>
-void find(void* library, const std::string& place, const char* name, F& function) {
-  function = reinterpret_cast<F>(::dlsym(library, name));
-  if (!function)
-    throw base::Error(place, std::string("the library that was found for LSL has no ") + name,
-                      "install liblsl 1.13 or newer, or name it in VIP_LSL_LIBRARY");
-}
-
 class LslReceiver final : public MarkerReceiver {
  public:
   LslReceiver(const std::string& place, const std::string& name) {
-    void* library = open_library(place);  // never closed: it leaves threads behind
-    find(library, place, "lsl_create_streaminfo", lsl_.create_streaminfo);
-    find(library, place, "lsl_destroy_streaminfo", lsl_.destroy_streaminfo);
-    find(library, place, "lsl_create_outlet", lsl_.create_outlet);
-    find(library, place, "lsl_destroy_outlet", lsl_.destroy_outlet);
-    find(library, place, "lsl_have_consumers", lsl_.have_consumers);
-    find(library, place, "lsl_push_sample_strtp", lsl_.push_sample_strtp);
-    find(library, place, "lsl_local_clock", lsl_.local_clock);
+    void* library = open_lsl_library(place);
+    find_lsl_function(library, place, "lsl_create_streaminfo", lsl_.create_streaminfo);
+    find_lsl_function(library, place, "lsl_destroy_streaminfo", lsl_.destroy_streaminfo);
+    find_lsl_function(library, place, "lsl_create_outlet", lsl_.create_outlet);
+    find_lsl_function(library, place, "lsl_destroy_outlet", lsl_.destroy_outlet);
+    find_lsl_function(library, place, "lsl_have_consumers", lsl_.have_consumers);
+    find_lsl_function(library, place, "lsl_push_sample_strtp", lsl_.push_sample_strtp);
+    find_lsl_function(library, place, "lsl_local_clock", lsl_.local_clock);
     // A recorder finds the stream of a resumed session again by its source.
     void* info = lsl_.create_streaminfo(name.c_str(), "Markers", 1, irregular_rate, format_string,
                                         ("vip-study " + name).c_str());

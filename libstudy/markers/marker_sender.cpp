@@ -1,13 +1,11 @@
 #include "libstudy/markers/marker_sender.hpp"
 
-#include <pthread.h>
-#include <signal.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "libstudy/base/clock.hpp"
+#include "libstudy/base/no_signals.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "stats/base/error.hpp"
 
@@ -16,22 +14,6 @@ namespace study {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-
-/// Signals are for the session's thread. A write to a closed pipe then fails instead of raising SIGPIPE.
-class NoSignals {
- public:
-  NoSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~NoSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  NoSignals(const NoSignals&) = delete;
-  NoSignals& operator=(const NoSignals&) = delete;
-
- private:
-  sigset_t before_{};
-};
 
 }  // namespace
 

@@ -1,10 +1,7 @@
 /// One line for each marker over TCP. The program connects; the recording program listens.
 
 #include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -12,6 +9,7 @@
 #include <vector>
 
 #include "libstudy/markers/receiver.hpp"
+#include "libstudy/markers/tcp_socket.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -22,41 +20,9 @@ constexpr std::int64_t first_patience_ns = 3'000'000'000;  // to connect before 
 
 constexpr int send_bytes = 65536;
 
-struct TcpAddress {
-  sockaddr_storage bytes{};
-  socklen_t size = 0;
-};
-
-/// Splits [HOST:]PORT, with an IPv6 host in brackets, and looks the host up.
-std::vector<TcpAddress> look_up(const std::string& place, const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
-  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  const bool digits =
-      !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
-  if (!digits || std::stoi(port) < 1 || std::stoi(port) > 65535 || host.empty())
-    throw base::Error(place, "has no host and port", "write tcp:PORT, tcp:HOST:PORT or tcp:[IPV6]:PORT");
-  addrinfo wish{};
-  wish.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (const int code = ::getaddrinfo(host.c_str(), port.c_str(), &wish, &found); code != 0)
-    throw base::Error(place, "host " + host + " was not found: " + ::gai_strerror(code),
-                      "write its address, such as 192.168.1.20");
-  std::vector<TcpAddress> all;
-  for (const addrinfo* one = found; one; one = one->ai_next) {
-    TcpAddress address;
-    std::memcpy(&address.bytes, one->ai_addr, one->ai_addrlen);
-    address.size = one->ai_addrlen;
-    all.push_back(address);
-  }
-  ::freeaddrinfo(found);
-  return all;
-}
-
 class TcpReceiver final : public MarkerReceiver {
  public:
-  TcpReceiver(const std::string& place, const std::string& rest) : addresses_(look_up(place, rest)) {
+  TcpReceiver(const std::string& place, const std::string& rest) : addresses_(look_up_tcp(place, rest)) {
     const std::string reason = connect(first_patience_ns);
     if (!reason.empty())
       throw base::Error(place, "nothing listens there: " + reason,
@@ -81,36 +47,12 @@ class TcpReceiver final : public MarkerReceiver {
 
  private:
   std::string connect(std::int64_t patience_ns) {
-    std::string reason;
-    for (const TcpAddress& address : addresses_) {
-      socket_.reset(::socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-      reason = reach(address, patience_ns);
-      if (reason.empty()) break;
-      socket_.close();
-    }
-    if (!socket_.is_open()) return reason;
-    const int at_once = 1;
-    ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    if (const std::string reason = connect_tcp(addresses_, patience_ns, socket_); !reason.empty())
+      return reason;
     // A large buffer would hide for hours that the receiver does not read.
     ::setsockopt(socket_.get(), SOL_SOCKET, SO_SNDBUF, &send_bytes, sizeof send_bytes);
     rest_ = marker_header();
     return send_rest();
-  }
-
-  std::string reach(const TcpAddress& address, std::int64_t patience_ns) const {
-    if (!socket_.is_open()) return std::strerror(errno);
-    if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address.bytes), address.size) == 0)
-      return "";
-    if (errno != EINPROGRESS) return std::strerror(errno);
-    if (!wait_until_writable(socket_.get(), patience_ns) && error() == 0) return "no answer";
-    const int code = error();
-    return code == 0 ? "" : std::strerror(code);
-  }
-
-  int error() const {
-    int code = 0;
-    socklen_t size = sizeof code;
-    return ::getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &code, &size) == 0 ? code : errno;
   }
 
   /// Reads away what the receiver sends. Returns a reason if it has closed the connection.
@@ -154,7 +96,7 @@ class TcpReceiver final : public MarkerReceiver {
 std::vector<std::string> tcp_destinations(const std::string& rest) {
   std::vector<TcpAddress> addresses;
   try {
-    addresses = look_up("", rest);
+    addresses = look_up_tcp("", rest);
   } catch (const base::Error&) {  // open_tcp_receiver() tells what is wrong
     return {};
   }

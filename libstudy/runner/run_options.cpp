@@ -1,5 +1,6 @@
 #include "libstudy/runner/run_options.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "stats/base/error.hpp"
@@ -40,6 +41,16 @@ int monitor_of(const base::Json& json, const std::string& place) {
   return found->get<int>();
 }
 
+std::array<double, 3> turn_of(const base::Json& json, const std::string& place) {
+  std::array<double, 3> turn{};
+  const auto found = json.find("gaze_turn_deg");
+  if (found == json.end()) return turn;
+  const auto angles = found->get<std::vector<double>>();
+  if (angles.size() != turn.size()) unreadable(place);
+  std::copy(angles.begin(), angles.end(), turn.begin());
+  return turn;
+}
+
 /// Reads the solver settings; base::Error if a text does not match its recorded SHA-256, because the session
 /// would then use other settings than recorded.
 std::vector<std::string> settings_of(const base::Json& json, const std::string& place) {
@@ -73,6 +84,7 @@ std::string format_run_options(const RunOptions& options) {
                   {"screen_width_mm", options.screen_width_mm},
                   {"viewing_distance_mm", options.viewing_distance_mm}};
   if (options.light_patch) json["light_patch"] = true;
+  if (options.gaze_turn_deg != std::array<double, 3>{}) json["gaze_turn_deg"] = options.gaze_turn_deg;
   for (const std::string& text : options.settings)
     json["settings"].push_back({{"sha256", base::sha256_hex(text)}, {"text", text}});
   return json.dump();
@@ -98,6 +110,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.gaze = json.at("gaze");
     options.ignore_presence = json.value("ignore_presence", false);
     options.light_patch = json.value("light_patch", false);
+    options.gaze_turn_deg = turn_of(json, place);
     options.accept_slow = json.value("accept_slow", false);
     options.station = json.at("station");
     options.screen_width_mm = optional_number(json.at("screen_width_mm"));

@@ -12,6 +12,7 @@
 #include "libstudy/stimulus/cell_features.hpp"
 #include "libstudy/stimulus/headless_display.hpp"
 #include "libstudy/stimulus/light_patch.hpp"
+#include "libstudy/trackers/eye_tracker.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -34,9 +35,19 @@ void check_together(const RunOptions& options, const Protocol& protocol) {
                       "leave it out, or use --display openxr without an --observer");
   if (options.gaze == "head" && options.display != "openxr")
     throw base::Error("--gaze head", "needs a headset", "use --gaze fixed, or --display openxr");
-  if (options.gaze == "tracked" && options.display == "openxr" && !asks_gaze(protocol))
+  const bool outside = is_outside_tracker(options.gaze);
+  if (outside && options.display != "openxr")
+    throw base::Error("--gaze " + options.gaze, "gives rays from the head, and only a headset knows the head",
+                      "use --display openxr, or --gaze fixed or mouse");
+  if (outside && options.clock == "virtual")
+    throw base::Error("--gaze " + options.gaze,
+                      "comes in real time, and time stands still on the virtual clock", "use --clock real");
+  if (!outside && options.gaze_turn_deg != std::array<double, 3>{})
+    throw base::Error("--gaze-turn", "turns the rays of an eye tracker outside OpenXR",
+                      "leave it out, or use --gaze tcp:PORT, tcp:HOST:PORT or lsl:NAME");
+  if ((outside || options.gaze == "tracked") && options.display == "openxr" && !asks_gaze(protocol))
     throw base::Error(
-        "--gaze tracked", "is read only with consent, and the protocol does not ask for it",
+        "--gaze " + options.gaze, "is read only with consent, and the protocol does not ask for it",
         std::string("ask ") + gaze_question + " on its page of kind consent, or use --gaze head");
   const bool shows_pages = options.display == "window" || options.display == "openxr";
   if (options.observer.empty() && !shows_pages)
@@ -83,14 +94,15 @@ void refuse_pictures(const SessionBakes& bakes, const Protocol& protocol) {
   }
 }
 
-/// Applies the options of the run. Requests the eye tracker for --gaze tracked; the tracker is not read
-/// before a participant allows recording. Adds a page if none is chosen, because the tracker's validation
-/// targets are drawn on a page.
+/// Applies the options of the run. Requests the runtime's eye tracker for --gaze tracked; the tracker is not
+/// read before a participant allows recording. For any eye tracker, adds a page if none is chosen, because
+/// the tracker's validation targets are drawn on a page.
 HeadsetChoice with_options(HeadsetChoice choice, const RunOptions& options) {
   constexpr int target_px = 128;
   choice.user_presence = !options.ignore_presence;
-  if (options.gaze != "tracked") return choice;
-  choice.eye_gaze = true;
+  const bool outside = is_outside_tracker(options.gaze);
+  if (options.gaze != "tracked" && !outside) return choice;
+  choice.eye_gaze = choice.eye_gaze || !outside;
   if (choice.page_width_px == 0) choice.page_width_px = choice.page_height_px = target_px;
   return choice;
 }
@@ -102,11 +114,15 @@ void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionS
   if (tracked && !display.session().eye_gaze)
     throw base::Error("--gaze tracked", "the headset's software offers no eye tracker",
                       "switch eye tracking on in the headset's software, or use --gaze head");
+  const auto outside = is_outside_tracker(options.gaze)
+                           ? std::make_shared<EyeTracker>(options.gaze, options.gaze_turn_deg)
+                           : nullptr;
   const auto recorder =
-      std::make_shared<HeadsetRecorder>(display, tracked ? GazeOrigin::Tracker : GazeOrigin::Head);
+      outside ? std::make_shared<HeadsetRecorder>(display, outside)
+              : std::make_shared<HeadsetRecorder>(display, tracked ? GazeOrigin::Tracker : GazeOrigin::Head);
   setup.slots = recorder;
-  if (tracked) setup.targets = std::make_unique<HeadsetTargets>(display);
-  if (!tracked && options.gaze != "head") return;
+  if (tracked || outside) setup.targets = std::make_unique<HeadsetTargets>(display, outside);
+  if (!tracked && !outside && options.gaze != "head") return;
   setup.gaze = recorder;
   viewing.ray = [recorder] { return recorder->ray(); };
 }

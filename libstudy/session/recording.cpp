@@ -73,7 +73,7 @@ void Recording::watch(const std::vector<GazeSample>& samples) {
 }
 
 void Recording::require_gaze() const {
-  if (lost_) throw TrialAgain{CutCause::Gaze};
+  if (lost_) throw TrialAgain{CutCause::Gaze, gaze_->trouble()};
 }
 
 bool comes_true(const Running& run, const std::function<bool()>& condition, double within_s,
@@ -107,6 +107,20 @@ void record_headset(const Running& run) {
   if (!run.parts.slots) return;
   run.parts.store.add_headset(run.session.id, run.parts.slots->facts());
   record_ipd(run);
+}
+
+void record_tracker(const Running& run) {
+  if (!run.parts.gaze) return;
+  run.parts.gaze->take_clocks();  // those of an earlier session
+  if (const auto clock = run.parts.gaze->clock())
+    run.parts.store.add_tracker_clocks(run.session.id, {&*clock, 1});
+}
+
+void log_tracker(const Running& run) {
+  if (!run.parts.gaze) return;
+  run.parts.store.add_tracker_clocks(run.session.id, run.parts.gaze->take_clocks());
+  for (const std::string& news : run.parts.gaze->take_gaze_news())
+    run.parts.store.log(run.session.id, "gaze", news, run.now_ns());
 }
 
 std::string log_news(const Running& run) {

@@ -73,6 +73,14 @@ bool sees_eyes(const Running& run, double within_s, const Check& check);
 /// Stores the headset's facts and the interpupillary distance. Does nothing without a headset.
 void record_headset(const Running& run);
 
+/// Stores the newest clock offset of the gaze source, if it has a clock of its own. Call it when a session
+/// begins.
+void record_tracker(const Running& run);
+
+/// Logs the gaze source's events, and stores its clock offsets, since the last call. Writes only if there are
+/// any.
+void log_tracker(const Running& run);
+
 /// Logs the headset's events since the last call and returns their names, separated by ", ". Also stores the
 /// headset's facts for each refresh rate and session since then. Returns an empty text without events or
 /// without a headset.

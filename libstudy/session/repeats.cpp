@@ -54,9 +54,13 @@ void Repeats::require_eyes() {
   const Check check = [this] { poll_requests(run_, false); };
   while (!eyes_seen_) {
     eyes_seen_ = sees_eyes(run_, eyes_within_s, check);
-    if (!eyes_seen_)
-      pause({"the eye tracker does not see the eyes",
-             "check how the headset sits, and calibrate the eye tracker"});
+    if (eyes_seen_) continue;
+    const std::string trouble = run_.parts.gaze->trouble();
+    pause(trouble.empty() ? Trouble{"the eye tracker does not see the eyes",
+                                    "check how the headset sits, and calibrate the eye tracker"}
+                          : Trouble{trouble,
+                                    "start the eye tracker's sender again; vip-study gaze --test "
+                                    "tries it"});
   }
 }
 

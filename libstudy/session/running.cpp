@@ -7,6 +7,7 @@ namespace study {
 void poll_requests(const Running& run, bool in_trial) {
   const Request request = run.request();
   const std::string news = log_news(run);
+  log_tracker(run);
   switch (request.kind) {
     case Request::Stop:
       throw Stopped();

@@ -39,7 +39,7 @@ struct TrialAgain {
 };
 
 /// Acts on the current request: Stop throws Stopped, EndSession throws Ending, Cut throws TrialAgain if
-/// `in_trial`. Before acting, logs the headset's events.
+/// `in_trial`. Before acting, logs the events of the headset and the eye tracker.
 void poll_requests(const Running& run, bool in_trial);
 
 }  // namespace study

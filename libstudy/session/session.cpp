@@ -212,9 +212,11 @@ std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& s
   const Running running{protocol, session, marked, hooks, marking};
   check_personal(running);
   record_headset(running);
+  record_tracker(running);
   const MarkedSession begun(marking);
   SessionRun run(running);
   const std::optional<Ending> ending = run.go();
+  log_tracker(running);
   if (ending && hooks.ends) hooks.ends(*ending);
   if (ending) run.say_farewell(*ending);
   return ending;

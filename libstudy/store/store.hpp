@@ -242,6 +242,8 @@ class Store {
   /// Commits a validation of the eye tracker and appends it to the session's earlier validations. base::Error
   /// as add_gaze().
   void add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed);
+  /// Commits measured clock offsets of a session's eye tracker.
+  void add_tracker_clocks(std::int64_t session, std::span<const TrackerClock> clocks);
   /// Commits markers of a session, and what became of them at their receivers.
   void add_markers(std::int64_t session, std::span<const MarkerRecord> markers);
   /// The receivers to which markers of this session were sent so far.

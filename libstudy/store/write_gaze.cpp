@@ -1,5 +1,5 @@
 /// Functions of Store that write participants' permissions, gaze if it is allowed, the facts and recordings
-/// of a headset, and markers.
+/// of a headset, clock offsets of eye trackers, and markers.
 #include <array>
 #include <tuple>
 
@@ -158,6 +158,20 @@ void Store::add_validation(std::int64_t session, std::span<const ValidatedPoint>
         .bind_all(session, validation, static_cast<std::int64_t>(i), point.clock_ns, point.azimuth_deg,
                   point.elevation_deg, point.samples, point.valid, point.accuracy_deg, point.sd_deg,
                   point.rms_s2s_deg, passed ? 1 : 0)
+        .run();
+  }
+  commit(transaction);
+}
+
+void Store::add_tracker_clocks(std::int64_t session, std::span<const TrackerClock> clocks) {
+  if (clocks.empty()) return;
+  Transaction transaction(*database_);
+  Statement insert(*database_, "INSERT INTO tracker_clock VALUES (NULL,?,?,?,?,?,?,?,?,?,?)");
+  for (const TrackerClock& clock : clocks) {
+    insert
+        .bind_all(session, clock.source, clock.device, clock.turn_deg[0], clock.turn_deg[1],
+                  clock.turn_deg[2], clock.clock_ns, clock.offset_ns, clock.round_trip_ns,
+                  marker_utc(utc_ns_of(clock.clock_ns)))
         .run();
   }
   commit(transaction);

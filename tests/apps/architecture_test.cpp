@@ -170,6 +170,7 @@ const Rooms rooms{
     {"libstudy/markers", 3},
     {"libstudy/protocol", 3},
     {"libstudy/design", 4},
+    {"libstudy/trackers", 4},
     {"libstudy/store", 5},
     {"libstudy/session", 6},
     {"libstudy/store/import", 6},

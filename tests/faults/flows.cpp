@@ -252,6 +252,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(6),
       upgrade_from(8),
       upgrade_from(9),
+      upgrade_from(10),
   };
   return flows;
 }

@@ -50,6 +50,7 @@ constexpr std::array tables{
     CsvTable{"gaze", "gaze.csv", "presentation_id, sample_index", "", false, true},
     CsvTable{"gaze_validation", "gaze_validations.csv", "session_id, validation, point", "", false, true},
     CsvTable{"marker", "markers.csv", "marker_id"},
+    CsvTable{"tracker_clock", "tracker_clocks.csv", "tracker_clock_id"},
     CsvTable{"light", "light.csv", "presentation_id"},
     CsvTable{"response", "responses.csv", "response_id", "words"},
     CsvTable{"response", "words.csv", "response_id", "", true},

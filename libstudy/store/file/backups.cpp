@@ -38,7 +38,8 @@ constexpr const char* of_presentation =
 constexpr Dependant dependants[] = {
     {"permission_change", of_session, 3},
     {"marker", of_session, 10},
-    {"light", of_presentation, 11},
+    {"tracker_clock", of_session, 11},
+    {"light", of_presentation, 12},
     {"gaze_validation", of_session, 5},
     {"gaze", of_presentation, 3},
     {"head", of_presentation, 5},

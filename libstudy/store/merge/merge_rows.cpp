@@ -153,6 +153,7 @@ const Table session_tables[] = {
     {"gaze", "", of_presentation},
     {"gaze_validation", "", of_session},
     {"marker", "marker_id", of_session},
+    {"tracker_clock", "tracker_clock_id", of_session},
     {"light", "", of_presentation},
     {"response", "response_id", "unit_id IN (SELECT unit_id FROM unit WHERE session_id = ?1)"},
     {"note", "note_id", of_session},

@@ -233,7 +233,8 @@ struct Damaged {
 };
 
 /// Calls `take` for the rows of the large tables (`large` true: frames, slots, head poses, gaze,
-/// validations, markers, light), or of all other tables. Reads from `sound`, or page by page if `sound` is null.
+/// validations, markers, clocks of eye trackers, light), or of all other tables. Reads from `sound`, or page
+/// by page if `sound` is null.
 void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
                const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);

@@ -73,7 +73,8 @@ bool is_response(const Table& table) { return table.name == std::string("respons
 }  // namespace
 
 bool is_large(const std::string& table) {
-  constexpr std::array names{"frame", "slot", "head", "gaze", "gaze_validation", "marker", "light"};
+  constexpr std::array names{"frame",           "slot",   "head",          "gaze",
+                             "gaze_validation", "marker", "tracker_clock", "light"};
   return std::find(names.begin(), names.end(), table) != names.end();
 }
 
