@@ -59,9 +59,9 @@ fail() { printf 'FAILED  %s: %s\n' "$page" "$1" >&2; failed=1; }
 # Prints an error for each block that names no known language and for each indented command: neither would be
 # run.
 check_blocks() {
-  awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|cpp|json|toml|mermaid)$/) print NR; inside = !inside; next }
+  awk '/^```/ { if (!inside && $0 !~ /^```(sh|text|cpp|json|toml|python|mermaid)$/) print NR; inside = !inside; next }
        !inside && /^    (\.\/)?(vip-|scripts|ctest|cmake|build)/ { print NR }' "$1" |
-    while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, cpp, json, toml or mermaid"; done
+    while read -r line; do echo "line $line: a block of commands begins with \`\`\`sh, others with text, cpp, json, toml, python or mermaid"; done
 }
 
 # Checks that the tests and scripts that the page names in its text exist. If some test programs are not

@@ -152,6 +152,7 @@ class Collector {
     for (const TaskTrial& trial : session.trials) counted = add_trial(session, trial) || counted;
     if (!counted) return;
     ++data_.gaze[session.gaze_source];
+    if (session.gaze_source == "tracked" && !session.tracker.empty()) ++data_.trackers[session.tracker];
     ++data_.stations[session.station];
     ++data_.displays[session.display];
     if (!session.angles.empty()) ++data_.angles[session.angles];

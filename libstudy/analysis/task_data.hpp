@@ -85,6 +85,8 @@ struct TaskData {
   std::vector<std::string> observers;  ///< the distinct observer models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
       mixed_pictures;  ///< number of analysed sessions with each value, such as gaze "tracked"
+  /// Number of analysed sessions with tracked gaze by the name of their eye tracker outside OpenXR.
+  std::map<std::string, int> trackers;
   /// Imported sessions with analysed answers: by program, the SHA-256 of the source of each session.
   std::map<std::string, std::vector<std::string>> imported;
   /// Pilot: analysed ratings by their frame rate: of recorded frames; without frames the one that the source

@@ -31,6 +31,9 @@ std::string protocols_text(const Field& study) {
       out += "Sessions of " + title +
              " with analysed answers by source of gaze: " + counts(protocol["gaze"]) +
              "; by display: " + counts(protocol["displays"]) + ". ";
+    if (protocol["trackers"].exists())
+      out +=
+          "Of these, gaze came from an eye tracker outside OpenXR in: " + counts(protocol["trackers"]) + ". ";
     if (!protocol["angles"].members().empty())
       out += "Sessions of " + title +
              " with analysed answers by vertical angle: " + counts(protocol["angles"]) + ". ";

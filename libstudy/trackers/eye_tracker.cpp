@@ -67,9 +67,11 @@ void EyeTracker::measure_first() {
     before_consent.clear();
     adopt_offset();
     if (!newest_offset_ns_ && monotonic_ns() > until_ns)
-      throw base::Error(place, "its sender does not tell its clock: no ping was answered within 3 s",
-                        "let it answer each line 'p NUMBER' at once with 'p NUMBER SECONDS'; "
-                        "docs/headset.md has an example of a sender");
+      throw base::Error(place, "the offset of its sender's clock could not be measured within 3 s",
+                        gaze_.starts_with("tcp:")
+                            ? "let the sender answer each line 'p NUMBER' at once with 'p NUMBER SECONDS'; "
+                              "docs/headset.md has an example of a sender"
+                            : "let the network pass the packets (UDP) by which LSL measures it");
   }
 }
 
@@ -79,7 +81,8 @@ void EyeTracker::work() {
     batch.clear();
     const std::string gone = link_->read(batch, read_ns);
     take_in(batch);
-    if (measure_.exchange(false)) link_->measure();
+    const bool unknown = !newest_offset_ns_ && monotonic_ns() - measured_at_ns_ > first_offset_ns;
+    if (measure_.exchange(false) || unknown) measure();
     adopt_offset();
     if (!gone.empty()) recover(gone);
   }
@@ -125,6 +128,8 @@ void EyeTracker::adopt_offset() {
   clock_ = {gaze_, device_, turn_deg_, offset->clock_ns, offset->offset_ns, offset->round_trip_ns};
   clocks_.push_back(clock_);
   newest_offset_ns_ = offset->offset_ns;
+  if (!gone_.empty()) news_.push_back("the sender of gaze from " + gaze_ + " is back");
+  gone_.clear();
   // Within a trial the offset stays, so that no step stands in its times.
   if (!offset_ns_ || !listening_) offset_ns_ = newest_offset_ns_;
 }
@@ -132,8 +137,9 @@ void EyeTracker::adopt_offset() {
 void EyeTracker::recover(const std::string& reason) {
   {
     const std::lock_guard lock(mutex_);
+    const bool was_there = gone_.empty();
     gone_ = "the sender of gaze from " + gaze_ + " is gone: " + reason;
-    if (news_.empty() || news_.back() != gone_) news_.push_back(gone_);
+    if (was_there) news_.push_back(gone_);
     offset_ns_.reset();
     newest_offset_ns_.reset();
   }
@@ -141,14 +147,14 @@ void EyeTracker::recover(const std::string& reason) {
   while (!stopping_) {
     std::this_thread::sleep_for(look_every);
     if (std::chrono::steady_clock::now() < next) continue;
-    if (link_->reach().empty()) break;
+    if (link_->reach().empty()) return measure();
     next = std::chrono::steady_clock::now() + try_again_every;
   }
-  if (stopping_) return;
+}
+
+void EyeTracker::measure() {
+  measured_at_ns_ = monotonic_ns();
   link_->measure();
-  const std::lock_guard lock(mutex_);
-  news_.push_back("the sender of gaze from " + gaze_ + " is back");
-  gone_.clear();
 }
 
 void EyeTracker::tell_of_refused() {

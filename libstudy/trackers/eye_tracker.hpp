@@ -76,6 +76,7 @@ class EyeTracker {
   void take_in(const std::vector<TrackerSample>& batch);
   void adopt_offset();
   void recover(const std::string& reason);
+  void measure();
   void tell_of_refused();
 
   const std::string gaze_;
@@ -83,6 +84,7 @@ class EyeTracker {
   std::array<double, 9> turn_{};  ///< rows of the rotation
   std::unique_ptr<TrackerLink> link_;
   std::atomic<bool> stopping_ = false, measure_ = false;
+  std::int64_t measured_at_ns_ = 0;  ///< when the last measurement of the offset began
 
   mutable std::mutex mutex_;  ///< guards the members below, except thread_
   std::string device_;
@@ -95,7 +97,7 @@ class EyeTracker {
   TrackerClock clock_;
   std::vector<TrackerClock> clocks_;
   std::vector<std::string> news_;
-  std::string gone_;  ///< why the sender is gone; empty: it is there
+  std::string gone_;  ///< why the sender is gone; empty: it is there, and its clock is known
   std::thread thread_;
 };
 

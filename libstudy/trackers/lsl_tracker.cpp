@@ -87,14 +87,15 @@ class LslTracker final : public TrackerLink {
     return "";
   }
 
-  /// liblsl measures all the time: the newest offset is read at once.
+  /// liblsl measures all the time: after the first call, the newest offset is read at once.
   void measure() override {
     if (!inlet_) return;
     double remote_s = 0, uncertainty_s = 0;
     std::int32_t error = 0;
-    const double correction_s =
-        lsl_.time_correction_ex(inlet_, &remote_s, &uncertainty_s, again_within_s, &error);
+    const double correction_s = lsl_.time_correction_ex(inlet_, &remote_s, &uncertainty_s,
+                                                        known_ ? again_within_s : open_within_s, &error);
     if (error != 0 || !std::isfinite(correction_s) || std::abs(correction_s) > most_lsl_s) return;
+    known_ = true;
     const double trip_s = std::isfinite(uncertainty_s) ? std::clamp(uncertainty_s, 0.0, 1e6) : 1e6;
     const RealClock clock;
     // The narrowest of some readings of both clocks; liblsl's own is CLOCK_MONOTONIC on Linux as a rule.
@@ -169,6 +170,7 @@ class LslTracker final : public TrackerLink {
       ++unreadable_;
       return;
     }
+    if (!sample.valid) sample.direction = TrackerSample().direction;
     sample.device_ns = std::llround(1e9 * time_s);
     out.push_back(sample);
   }
@@ -177,6 +179,7 @@ class LslTracker final : public TrackerLink {
   LslInletFunctions lsl_{};
   void* inlet_ = nullptr;
   std::int32_t channels_ = 4;
+  bool known_ = false;  ///< an offset was measured; the first one takes longest
   std::int64_t unreadable_ = 0;
   std::optional<ClockOffset> measured_;
 };

@@ -20,7 +20,7 @@ struct ClockOffset {
 };
 
 /// The way to a sender. All calls come from one thread at a time. No call waits for more than a second,
-/// besides the opening.
+/// besides the opening and the first measure().
 class TrackerLink {
  public:
   virtual ~TrackerLink() = default;

@@ -59,11 +59,13 @@ TEST(ReportPilot, WhatWasLeftOutByHandAndByRuleIsListed) {
 TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
   auto pilot = pilot_of_people();
   pilot.sessions[1].gaze_source = "tracked";
+  pilot.sessions[1].tracker = pilot.sessions[2].tracker = "XR-9";  // the gaze of session 2 was not tracked
   pilot.sessions[2].trials[9].first.verdict = study::Verdict::Fail;
   pilot.sessions[3].state = "stopped";
   const study::Json json = results_of({{pilot, made_study::task1(6)}, 0});
   const auto html = study::report::results_page(json);
-  EXPECT_THAT(words_of(json), AllOf(HasSubstr("mouse: 7, tracked: 1"), HasSubstr("window: 8")));
+  EXPECT_THAT(words_of(json), AllOf(HasSubstr("mouse: 7, tracked: 1"), HasSubstr("window: 8"),
+                                    HasSubstr("an eye tracker outside OpenXR in: XR-9: 1.")));
   EXPECT_EQ(json.at("flow").at("pilot").at("started"), 8);
   EXPECT_EQ(json.at("flow").at("pilot").at("done"), 7);
   EXPECT_NE(html.find("id=\"flow-pilot-title\""), std::string::npos);

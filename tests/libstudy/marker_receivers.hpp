@@ -109,6 +109,8 @@ class Listener {
     }
     return seen_;
   }
+  int listening() const { return socket_; }
+  int connection() const { return connection_; }
   void hang_up() {
     if (connection_ >= 0) ::close(connection_);
     connection_ = -1;

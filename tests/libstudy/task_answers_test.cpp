@@ -248,6 +248,20 @@ TEST(TaskAnswers, WhatUnblindedTheExperimenterStandsWithTheSession) {
   EXPECT_EQ(read.at(2).unblinded, "mirror opened and setting revealed");
 }
 
+TEST(TaskAnswers, TheNameOfAnOutsideEyeTrackerStandsWithTheSession) {
+  const test::TemporaryFolder folder;
+  Store store(folder / "study.db", Open::Create);
+  store.add_run(test::run_plan(test::pilot(), {"P01", "P02"}));
+  const auto sessions = store.open_runs().at(0).sessions;
+  for (const char* device : {"B", "A", "A"}) {
+    const TrackerClock clock{"tcp:7", device, {}, 1, 2, 3};
+    store.add_tracker_clocks(sessions.at(1).id, {&clock, 1});
+  }
+  const auto read = read_tasks(folder / "study.db").protocols.at(0).sessions;
+  EXPECT_EQ(read.at(0).tracker, "");
+  EXPECT_EQ(read.at(1).tracker, "A and B");
+}
+
 TEST(TaskAnswers, AnglesAreThoseOfWhatWasShown) {
   const test::TemporaryFolder folder;
   Store store(folder / "study.db", Open::Create);

@@ -54,6 +54,7 @@ Json protocol_json(const TaskData& data) {
       {"mixed_pictures", data.mixed_pictures},
       {"effects", effects_json(data)},
       {"overlay", data.protocol.paint_temperature ? Json("temperature") : Json()}};
+  if (!data.trackers.empty()) json["trackers"] = data.trackers;
   if (!data.imported.empty()) json["imported"] = data.imported;
   if (!data.doubtful_times.empty()) json["doubtful_times"] = doubtful_json(data);
   return json;

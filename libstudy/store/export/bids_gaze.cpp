@@ -77,6 +77,22 @@ void add_validation(Connection& database, std::int64_t session, Json& json) {
   json["CalibrationUnit"] = "deg";
 }
 
+/// Adds name, source and clock of an eye tracker outside OpenXR. The session's times follow from the clock's
+/// offset, which is right within half the round trip.
+void add_tracker(Connection& database, std::int64_t session, Json& json) {
+  Statement row(
+      database,
+      "SELECT device, source, max(round_trip_ns), count(*) FROM tracker_clock WHERE session_id = ?1 "
+      "AND device = (SELECT device FROM tracker_clock WHERE session_id = ?1 ORDER BY "
+      "tracker_clock_id DESC LIMIT 1) GROUP BY device, source");
+  row.bind_all(session);
+  if (!row.step()) return;
+  json["ManufacturersModelName"] = row.text(0);
+  json["GazeSource"] = row.text(1);
+  json["ClockOffsetsMeasured"] = row.integer(3);
+  json["LongestRoundTripMs"] = 1e-6 * row.real(2);
+}
+
 Json columns(const std::string& what) {
   return {
       {"timestamp", described("when the sample came, on the time scale of the events' onset; between two "
@@ -113,6 +129,7 @@ void write_eye(Connection& database, const Samples& samples, const LabelledSessi
             {"StartTime", static_cast<double>(samples.times_ns.front()) / 1e9},
             {"Columns", samples.rows.front()}};
   add_validation(database, session.id, json);
+  add_tracker(database, session.id, json);
   json.update(samples.rays ? ray_columns_meaning() : columns("gaze"));
   writer.json(name + ".json", json);
 }

@@ -107,7 +107,9 @@ constexpr const char* task_sessions_sql =
     "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1), "
     "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)), "
     "uid, "
-    "coalesce(imported_from, ''), coalesce(source_sha256, '') "
+    "coalesce(imported_from, ''), coalesce(source_sha256, ''), "
+    "(SELECT group_concat(device, ' and ') FROM (SELECT DISTINCT device FROM tracker_clock k WHERE "
+    "k.session_id = session.session_id ORDER BY 1)) "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
@@ -180,6 +182,7 @@ class Reader {
                      .settings = run_settings(database_, session_.integer(0)),
                      .frame_costs = frame_costs(),
                      .not_before_utc = session_.text(15),
+                     .tracker = session_.text(19),
                      .uid = session_.text(16),
                      .imported_from = session_.text(17),
                      .source_sha256 = session_.text(18)});

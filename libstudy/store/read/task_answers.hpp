@@ -109,6 +109,9 @@ struct TaskSession {
   /// if that is later. The session's first answer came later, whatever the station's clock says. Empty: not
   /// known.
   std::string not_before_utc = {};
+  /// Eye tracker outside OpenXR, by the name that its sender gave; several are joined by " and ". Empty:
+  /// none.
+  std::string tracker = {};
   std::string uid = {};  ///< random identifier of the session, equal in all copies of the database
   /// Program that recorded the session elsewhere, and the SHA-256 of the file of its answers; empty: not
   /// imported.
