@@ -107,6 +107,7 @@ void EyeTracker::take_in(const std::vector<TrackerSample>& batch) {
     last_ns_ = sampled_ns;
     arrived_ns_ = now_ns;
     ++counts_.samples;
+    at_sample_ = counts_;
     if (!listening_) continue;
     if (samples_.size() >= most_waiting) {
       counts_.overflow += static_cast<std::int64_t>(samples_.size() / 2);
@@ -220,9 +221,9 @@ std::string EyeTracker::trouble() const {
   if (monotonic_ns() - arrived_ns_ < silent_ns) return "";
   const std::string place = "the sender of gaze from " + gaze_;
   if (!offset_ns_) return place + " does not answer the pings for its clock";
-  if (counts_.far > told_.far) return place + " gives times far from those of arrival";
-  if (counts_.backwards > told_.backwards) return place + " gives times that do not go forward";
-  if (counts_.unreadable > told_.unreadable) return place + " sends lines that are no samples";
+  if (counts_.far > at_sample_.far) return place + " gives times far from those of arrival";
+  if (counts_.backwards > at_sample_.backwards) return place + " gives times that do not go forward";
+  if (counts_.unreadable > at_sample_.unreadable) return place + " sends lines that are no samples";
   return place + " sends no samples";
 }
 

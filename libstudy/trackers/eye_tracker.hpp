@@ -93,7 +93,7 @@ class EyeTracker {
   std::int64_t last_ns_ = 0;                                  ///< time of the newest usable sample
   std::int64_t arrived_ns_ = 0;                               ///< arrival of the newest usable sample
   std::vector<TrackedGaze> samples_;
-  TrackerCounts counts_, told_;
+  TrackerCounts counts_, told_, at_sample_;  ///< now, when the log was told, at the newest usable sample
   TrackerClock clock_;
   std::vector<TrackerClock> clocks_;
   std::vector<std::string> news_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/markers/lsl_library.hpp"

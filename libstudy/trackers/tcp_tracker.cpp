@@ -7,6 +7,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/markers/tcp_socket.hpp"
@@ -24,6 +26,7 @@ constexpr int pings_for_an_offset = 10;
 constexpr std::int64_t pong_within_ns = 200 * ms_ns;
 /// Bytes that one read() takes. A sender that floods is left waiting then, and its samples come too late.
 constexpr std::size_t most_read_bytes = 1 << 16;
+constexpr std::size_t too_long = most_line_bytes + 2;  // with a carriage return
 constexpr std::int64_t flood_pause_ns = 10 * ms_ns;
 constexpr const char* example = "docs/headset.md has an example of a sender";
 
@@ -79,7 +82,7 @@ class TcpTracker final : public TrackerLink {
   std::string connect(std::int64_t patience_ns) {
     line_.clear();
     unsent_.clear();
-    greeted_ = skipping_ = false;
+    greeted_ = false;
     pinged_ns_ = pings_left_ = 0;
     std::string reason = connect_tcp(addresses_, patience_ns, socket_);
     connected_ns_ = RealClock().now_ns();
@@ -98,19 +101,13 @@ class TcpTracker final : public TrackerLink {
       const bool whole = end != std::string_view::npos;
       const std::string_view part = bytes.substr(0, whole ? end : bytes.size());
       bytes.remove_prefix(whole ? end + 1 : bytes.size());
-      if (!skipping_) line_ += part;
-      // A line without an end must not fill the memory. One byte more than a line may have makes it
-      // unreadable.
-      if (line_.size() > most_line_bytes + 1) {
-        line_.resize(most_line_bytes + 2);
-        skipping_ = true;
-      }
+      line_ += part;
+      // A line without an end must not fill the memory: a byte too many already makes it unreadable.
+      if (line_.size() > too_long) line_.resize(too_long);
       if (!whole) break;
       const std::string line = std::exchange(line_, {});
-      skipping_ = false;
       if (std::string reason = take_line(line, came_ns, out); !reason.empty()) return reason;
     }
-    if (!greeted_ && skipping_) return lost("its first line is not 'vip-gaze 1 NAME'");
     return "";
   }
 
@@ -161,9 +158,8 @@ class TcpTracker final : public TrackerLink {
   MarkerFile socket_;
   std::string device_;
   std::int64_t connected_ns_ = 0;
-  std::string line_;       ///< bytes of a line that is not whole yet
-  bool skipping_ = false;  ///< the rest of a line that is too long is left out
-  bool greeted_ = false;   ///< the first line came
+  std::string line_;      ///< bytes of a line that is not whole yet
+  bool greeted_ = false;  ///< the first line came
   std::int64_t unreadable_ = 0;
   std::string unsent_;  ///< bytes of a ping that are not sent yet
   int pings_left_ = 0;

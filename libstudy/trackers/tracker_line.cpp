@@ -1,5 +1,6 @@
 #include "libstudy/trackers/tracker_line.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>

@@ -122,7 +122,7 @@ bool soon(F&& what) {
 }
 
 TEST(EyeTracker, SamplesGetTheComputersTimeAndAreKeptFromStartToStopAlone) {
-  GazeSender sender({.direction = "0.6 0 -0.8"});
+  GazeSender sender({.pong_delay_ms = 3, .direction = "0.6 0 -0.8"});
   EyeTracker tracker(sender.name(), {0, 0, 180});
   EXPECT_EQ(tracker.device(), "A tracker");
   ASSERT_TRUE(soon([&] { return sender.sent > 20; }));
@@ -177,7 +177,8 @@ TEST(EyeTracker, BrokenLinesAndTimesAreCountedAndNotUsed) {
              "vip-gaze 1 Again\n");
   sender.say("g " + sender.time(-0.5) + ahead + "g " + sender.time(3600) + ahead + "g 4" + ahead);
   EXPECT_TRUE(soon([&] { return tracker.counts().far == 2; }));
-  TrackerCounts counts = tracker.counts();
+  EXPECT_TRUE(soon([&] { return tracker.trouble().find("gives times far") != std::string::npos; }));
+  const TrackerCounts counts = tracker.counts();
   EXPECT_EQ(counts.unreadable, 4);
   EXPECT_EQ(counts.backwards, 1);
   tracker.take();

@@ -25,6 +25,7 @@ class GazeSender {
     double ahead_s = 1000;  ///< the tracker's clock minus the computer's
     std::string hello = "vip-gaze 1 A tracker\n";
     bool answers_pings = true;
+    int pong_delay_ms = 0;  ///< from reading its clock to the answer
     std::string direction = "0 0 -1";
   };
   GazeSender() : GazeSender(Ways()) {}
@@ -97,7 +98,9 @@ class GazeSender {
     if (count <= 0) return false;
     asked.append(bytes, static_cast<std::size_t>(count));
     for (std::size_t end = asked.find('\n'); end != std::string::npos; end = asked.find('\n')) {
-      if (ways_.answers_pings) send(asked.substr(0, end) + " " + time() + "\n");
+      const std::string pong = asked.substr(0, end) + " " + time() + "\n";
+      std::this_thread::sleep_for(std::chrono::milliseconds(ways_.pong_delay_ms));
+      if (ways_.answers_pings) send(pong);
       asked.erase(0, end + 1);
     }
     return true;
