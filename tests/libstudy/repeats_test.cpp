@@ -64,8 +64,10 @@ class Eyes final : public GazeSource {
     return {sample};
   }
   void stop() override {}
+  std::string trouble() override { return why; }
 
   bool silent = false;
+  std::string why;  ///< why no samples come
 
  private:
   const Clock& clock_;
@@ -235,6 +237,30 @@ TEST(Repeats, AfterACutForWantOfGazeTheEyesMustBeSeenAgain) {
   EXPECT_EQ(one.lamp.turns_ns.size(), 2u) << "it was shown to eyes that are not seen";
   EXPECT_THAT(one.events("paused by the program"),
               ElementsAre("the eye tracker does not see the eyes", "the eye tracker does not see the eyes"));
+}
+
+TEST(Repeats, WhyASourceOfGazeIsSilentStandsInTheNoteAndOnThePause) {
+  Flashing one;
+  bool gone = false;
+  one.closed = [&] {
+    gone = gone || one.lamp.lit();
+    one.eyes.silent = gone;
+    one.eyes.why = gone ? "the sender is gone" : "";
+    return false;
+  };
+  SessionHooks hooks;
+  std::vector<Trouble> told;
+  hooks.trouble = [&](const Trouble& trouble) {
+    told.push_back(trouble);
+    return false;
+  };
+  hooks.request = [&] { return told.empty() ? Request::GoOn : Request::Stop; };
+  EXPECT_THROW(one.play(hooks), Stopped);
+  EXPECT_THAT(one.events("trial interrupted"),
+              ElementsAre("the eye tracker lost the eyes for over 100 ms: the sender is gone"));
+  EXPECT_THAT(one.events("paused by the program"), ElementsAre("the sender is gone"));
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_THAT(told[0].mend, HasSubstr("start the eye tracker's sender again"));
 }
 
 }  // namespace
