@@ -142,7 +142,7 @@ TEST_F(HeadsetTrackerE2e, SamplesAreKeptWithTheSessionsTime) {
 
 TEST_F(HeadsetTrackerE2e, WhatCannotBeReadIsRefusedBeforeAnythingIsWritten) {
   base::write_file_atomically(dam_, "no bake is read");
-  const auto refused = [&](std::vector<std::string> arguments, int status, const std::string& says) {
+  const auto refused = [&](const std::vector<std::string>& arguments, int status, const std::string& says) {
     const auto ended = study("", arguments);
     EXPECT_EQ(ended.exit_code, status) << says;
     EXPECT_THAT(ended.err, HasSubstr(says));
@@ -223,7 +223,7 @@ TEST(GazeCommandE2e, TheExampleOfThePageSendsWhatTheCommandReads) {
   base::write_file_atomically(folder / "sender.py", text.replace(text.find("7007"), 4, port));
   test::Process sender({"/usr/bin/env", "python3", folder / "sender.py"});
   const std::vector<std::string> arguments{
-      VIP_BIN_DIR "/vip-study", "gaze", "--test", "tcp:" + port, "--seconds", "0.3"};
+      std::string(VIP_BIN_DIR) + "/vip-study", "gaze", "--test", "tcp:" + port, "--seconds", "0.3"};
   study::MarkerFile socket;
   const auto addresses = study::look_up_tcp("", port);
   for (int i = 0; i < 200 && !study::connect_tcp(addresses, 1'000'000'000, socket).empty(); ++i)
@@ -240,7 +240,8 @@ TEST(GazeCommandE2e, TheExampleOfThePageSendsWhatTheCommandReads) {
 TEST(GazeCommandE2e, AnLslStreamIsTriedAndASilentSenderIsAnError) {
   const ::test::TemporaryFolder folder;
   const auto try_out = [](const std::string& source) {
-    return test::run_program({VIP_BIN_DIR "/vip-study", "gaze", "--test", source, "--seconds", "0.3"});
+    return test::run_program(
+        {std::string(VIP_BIN_DIR) + "/vip-study", "gaze", "--test", source, "--seconds", "0.3"});
   };
   {
     const ::test::LslStub stub(folder.path());
