@@ -14,8 +14,8 @@ command -v debootstrap >/dev/null || skip "debootstrap is missing (apt-get insta
 build=$(realpath "${VIP_BUILD:-build/dev}")
 [ -x "$build/bin/vip-study" ] && [ -x "$build/bin/vip-view" ] || skip "$build has no vip-study and vip-view; build them, or set VIP_BUILD"
 
-# Starts itself again in a mount namespace of its own, so that its mounts end with it.
-[ -n "${VIP_OWN_MOUNTS:-}" ] || exec env VIP_OWN_MOUNTS=1 unshare --mount "$0" "$@"
+# Starts itself again in namespaces of its own: its mounts end with it, and it kills its own processes alone.
+[ -n "${VIP_OWN_MOUNTS:-}" ] || exec env VIP_OWN_MOUNTS=1 unshare --mount --pid --fork --mount-proc "$0" "$@"
 out=$(realpath -m "${1:-out/monado}")
 root=$out/root
 mkdir -p "$out"

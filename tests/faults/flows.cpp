@@ -253,6 +253,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(8),
       upgrade_from(9),
       upgrade_from(10),
+      upgrade_from(11),
   };
   return flows;
 }
