@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
 
 #include "libstudy/headset/actions.hpp"
 #include "stats/base/error.hpp"
@@ -31,6 +30,19 @@ XrSystemId find_system(const XrConnection& xr) {
   return system;
 }
 
+/// True if the headset reports whether it is worn. False also if the call fails: API layers that are older
+/// than the extension refuse its structure.
+bool reports_presence(const XrConnection& xr, XrSystemId system) {
+  XrSystemUserPresencePropertiesEXT presence{};
+  presence.type = XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT;
+  XrSystemProperties found{};
+  found.type = XR_TYPE_SYSTEM_PROPERTIES;
+  found.next = &presence;
+  const XrResult result =
+      xr.function<PFN_xrGetSystemProperties>("xrGetSystemProperties")(xr.instance(), system, &found);
+  return XR_SUCCEEDED(result) && presence.supportsUserPresence;
+}
+
 void read_properties(const XrConnection& xr, HeadsetSystem& out) {
   XrSystemEyeGazeInteractionPropertiesEXT gaze{};
   gaze.type = XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT;
@@ -38,16 +50,12 @@ void read_properties(const XrConnection& xr, HeadsetSystem& out) {
   found.type = XR_TYPE_SYSTEM_PROPERTIES;
   const bool asks_gaze = xr.has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
   if (asks_gaze) found.next = &gaze;
-  XrSystemUserPresencePropertiesEXT presence{};
-  presence.type = XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT;
-  const bool asks_presence = xr.has(XR_EXT_USER_PRESENCE_EXTENSION_NAME);
-  if (asks_presence) presence.next = std::exchange(found.next, &presence);
   check_xr(xr.function<PFN_xrGetSystemProperties>("xrGetSystemProperties")(xr.instance(), out.id, &found),
            "xrGetSystemProperties");
   out.name = found.systemName;
   out.position = found.trackingProperties.positionTracking;
   out.eye_gaze = asks_gaze && gaze.supportsEyeGazeInteraction;
-  out.user_presence = asks_presence && presence.supportsUserPresence;
+  out.user_presence = xr.has(XR_EXT_USER_PRESENCE_EXTENSION_NAME) && reports_presence(xr, out.id);
 }
 
 void read_views(const XrConnection& xr, HeadsetSystem& out) {

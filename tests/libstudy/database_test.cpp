@@ -277,7 +277,7 @@ TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
   test::write_version_1(path);
-  EXPECT_EQ(export_csv(path, folder / "out").size(), 25u);
+  EXPECT_EQ(export_csv(path, folder / "out").size(), 26u);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // with the backup of the upgrade
 }

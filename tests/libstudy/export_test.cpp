@@ -37,7 +37,7 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
   const auto files = export_csv(database, folder / "out");
-  EXPECT_EQ(files.size(), 25u);
+  EXPECT_EQ(files.size(), 26u);
   EXPECT_THAT(test::bytes_of(folder / "out" / "responses.csv"),
               ::testing::StartsWith("response_id,unit_id,attempt,question_id,score,response_time_s,"
                                     "answered_utc,input,counts,why_not\r\n1,3,1,2,6,0.5,2"));
@@ -72,7 +72,7 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
     }
     EXPECT_FALSE(info.step()) << table.text(0);
   }
-  EXPECT_EQ(tables, 28);
+  EXPECT_EQ(tables, 29);
 }
 
 TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {
@@ -139,7 +139,7 @@ TEST(ExportCsv, FreeWordsLeaveTheDatabaseOnDemandAlone) {
   };
   export_csv(database, folder / "plain");
   EXPECT_FALSE(has_note("plain"));
-  EXPECT_EQ(export_csv(database, folder / "words", {.words = true}).size(), 27u);
+  EXPECT_EQ(export_csv(database, folder / "words", {.words = true}).size(), 28u);
   EXPECT_TRUE(has_note("words"));
 }
 
@@ -206,7 +206,7 @@ TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder.path()), {}), files);
   EXPECT_EQ(test::bytes_of(folder / "namesake" / "dictionary.csv"), "other words");
   fs::create_directory(folder / "empty");
-  EXPECT_EQ(export_csv(database, folder / "empty").size(), 25u);
+  EXPECT_EQ(export_csv(database, folder / "empty").size(), 26u);
 }
 
 }  // namespace
