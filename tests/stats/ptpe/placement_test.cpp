@@ -27,7 +27,8 @@ std::vector<PlacementSetting> settings(double step, double highest) {
   return out;
 }
 
-const std::vector<PlacementSetting> pilot = settings(10, 50), fine = settings(2.5, 70);
+const std::vector<PlacementSetting> pilot = settings(10, 50), fine = settings(2.5, 70),
+                                    wide = settings(2.5, 90);
 
 }  // namespace
 
@@ -125,7 +126,7 @@ struct Widths {
 std::string figure_of(const std::vector<Widths>& all) {
   const std::vector<const char*> colours{svg::colour::blue, svg::colour::vermilion, svg::colour::green};
   const std::vector<const char*> dashes{"none", "6 3", "2 3"};
-  constexpr double left = 60, bottom = 270, panel = 300, height = 230, least = 0.5, most = 2;
+  constexpr double left = 60, bottom = 270, panel = 300, height = 230, least = 0.5, most = 2.2;
   svg::Picture picture{720, 345, "placement", "Widths of intervals by the number of placed trials"};
   picture.description = "Widths of the intervals of a and of b as shares of those of 21 fixed settings";
   std::string& body = picture.body;
@@ -182,11 +183,11 @@ TEST(PlacementSlow, WidthsBesideFixedSettings) {
     for (const double a : {18.0, 24.0, 31.0}) {
       for (const double b : {0.01, 0.02, 0.03}) {
         PlacementStudy study{.a = a, .b = b, .truth = truth, .adaptive = false};
-        const PlacementSummary all = simulate_placement(study, pilot, fine, 600, 1);
+        const PlacementSummary all = simulate_placement(study, pilot, wide, 600, 1);
         study.adaptive = true;
         for (const int trials : {7, 10, 14}) {
           study.trials = trials;
-          const PlacementSummary placed = simulate_placement(study, pilot, fine, 600, 1);
+          const PlacementSummary placed = simulate_placement(study, pilot, wide, 600, 1);
           std::printf(
               "%s a %g b %g trials %d: fitted %.3f, width a %.2f b %.2f, covered %.3f %.3f (fixed %.3f "
               "%.3f), "
@@ -199,12 +200,12 @@ TEST(PlacementSlow, WidthsBesideFixedSettings) {
           if (truth != PlacementTruth::Model || trials != 10) continue;
           ++truths;
           same_width += placed.a_width <= 1.05 * all.a_width && placed.b_width <= 1.05 * all.b_width;
-          EXPECT_GT(placed.b_covered, a == 31 && b == 0.03 ? 0.86 : 0.92);
-          EXPECT_GT(placed.a_covered, 0.9);
+          EXPECT_GT(placed.b_covered, 0.91);
+          EXPECT_GT(placed.a_covered, 0.91);
         }
       }
     }
   }
-  EXPECT_GE(same_width, 5) << "of " << truths;
+  EXPECT_GE(same_width, 6) << "of " << truths;
   if (const char* file = std::getenv("VIP_FIGURE")) base::write_file_atomically(file, figure_of(widths));
 }
