@@ -156,7 +156,12 @@ try_all() {  # plays all rows on $compositor and $graphics
   until_playing stopped
   stop_service -TERM
   wait $!
-  row "service stopped in a trial: an error" "1, 1 mend" "$?, $(grep -c '^  mend: .*vip-study resume' "$log.stopped") mend"
+  # Monado may let the program end first.
+  local stopped=$? mends finished=0
+  mends=$(grep -c '^  mend: .*vip-study resume' "$log.stopped")
+  [ $stopped -eq 0 ] && [ "$(left_of stopped)" = 0 ] && finished=1
+  [ $stopped -eq 1 ] && [ "$mends" = 1 ] && finished=1
+  row "service asked to stop: error, or finished" 1 $finished
   start_service
   study resume --db /run/xr/work/stopped.db >"$log.stopped.resume" 2>&1
   row "service started again, then resumed" "0, 0 left, 0 twice" "$?, $(left_of stopped) left, $(twice_of stopped) twice"
