@@ -99,6 +99,10 @@ run() {
 }
 left_of() { ask "$1" "select count(*) from unit where state <> 'done'"; }
 twice_of() { ask "$1" "select count(*) from (select 1 from response where attempt > 0 group by unit_id, question_id having count(*) > 1)"; }
+resume() {  # resume NAME WHAT: resumes a session and adds the row WHAT
+  study resume --db "/run/xr/work/$1.db" >"$log.$1.resume" 2>&1
+  row "$2" "0, 0 left, 0 twice" "$?, $(left_of "$1") left, $(twice_of "$1") twice"
+}
 until_playing() {  # until_playing NAME: waits until the second trial of a session is shown
   for _ in $(seq 300); do
     [ "$(grep -c '^begins .* stimulus' "$log.$1" 2>/dev/null)" -ge 2 ] && sleep 1.5 && return
@@ -149,8 +153,7 @@ try_all() {  # plays all rows on $compositor and $graphics
   until_playing killed
   pkill -KILL -x vip-study
   wait $!
-  study resume --db /run/xr/work/killed.db >"$log.killed.resume" 2>&1
-  row "killed in a trial, then resumed" "0, 0 left, 0 twice" "$?, $(left_of killed) left, $(twice_of killed) twice"
+  resume killed "killed in a trial, then resumed"
 
   run stopped /run/xr/work/pilot.toml "${dam[@]}" --trial-seconds 4 &
   until_playing stopped
@@ -163,8 +166,7 @@ try_all() {  # plays all rows on $compositor and $graphics
   [ $stopped -eq 1 ] && [ "$mends" = 1 ] && finished=1
   row "service asked to stop: error, or finished" 1 $finished
   start_service
-  study resume --db /run/xr/work/stopped.db >"$log.stopped.resume" 2>&1
-  row "service started again, then resumed" "0, 0 left, 0 twice" "$?, $(left_of stopped) left, $(twice_of stopped) twice"
+  resume stopped "service started again, then resumed"
 
   run service /run/xr/work/pilot.toml "${dam[@]}" --trial-seconds 4 &
   until_playing service
@@ -172,8 +174,7 @@ try_all() {  # plays all rows on $compositor and $graphics
   wait $!
   row "service killed in a trial: an error" "1, 1 mend" "$?, $(grep -c '^  mend: .*vip-study resume' "$log.service") mend"
   start_service
-  study resume --db /run/xr/work/service.db >"$log.service.resume" 2>&1
-  row "service started again, then resumed" "0, 0 left, 0 twice" "$?, $(left_of service) left, $(twice_of service) twice"
+  resume service "service started again, then resumed"
 
   run two /run/xr/work/pilot.toml "${dam[@]}" --trial-seconds 4 &
   until_playing two

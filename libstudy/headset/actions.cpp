@@ -1,7 +1,6 @@
 #include "libstudy/headset/actions.hpp"
 
 #include <cstring>
-#include <string_view>
 
 #include "stats/base/error.hpp"
 
@@ -64,7 +63,8 @@ bool suggest_profile(const SessionHandle& session, const std::string& profile,
   return true;
 }
 
-/// A kind of controller. Parts are paths below a hand; empty: it has no such part.
+/// A kind of controller. Parts are paths below a hand; null: it has no such part. menu: `y_and_b`: the button
+/// is Y of the left hand and B of the right one.
 struct Controller {
   const char *profile, *select, *menu, *stick;
   const char* extension = nullptr;  ///< that adds the profile; null: every runtime knows the profile
@@ -72,18 +72,21 @@ struct Controller {
 
 constexpr const char *trigger = "/input/trigger/value", *thumbstick = "/input/thumbstick",
                      *menu_button = "/input/menu/click";
+// These controllers have no menu button with one name on both hands. The runtime may reserve the menu button
+// of the left one.
+constexpr const char* y_and_b = "";
 // Every runtime supports the simple controller, which has no stick. A pinch of thumb and finger is the select
 // button of a tracked hand, which has no menu button: each page has a button to stop.
 constexpr Controller controllers[] = {
-    {"khr/simple_controller", "/input/select/click", menu_button, ""},
-    {"oculus/touch_controller", trigger, "", thumbstick},
+    {"khr/simple_controller", "/input/select/click", menu_button, nullptr},
+    {"oculus/touch_controller", trigger, y_and_b, thumbstick},
     {"valve/index_controller", trigger, "/input/b/click", thumbstick},
     {"microsoft/motion_controller", trigger, menu_button, thumbstick},
     {"htc/vive_controller", "/input/trigger/click", menu_button, "/input/trackpad"},
-    {"htc/vive_focus3_controller", trigger, "", thumbstick, "XR_HTC_vive_focus3_controller_interaction"},
-    {"bytedance/pico_neo3_controller", trigger, "", thumbstick, "XR_BD_controller_interaction"},
-    {"bytedance/pico4_controller", trigger, "", thumbstick, "XR_BD_controller_interaction"},
-    {"ext/hand_interaction_ext", "/input/pinch_ext/value", "", "", "XR_EXT_hand_interaction"},
+    {"htc/vive_focus3_controller", trigger, y_and_b, thumbstick, "XR_HTC_vive_focus3_controller_interaction"},
+    {"bytedance/pico_neo3_controller", trigger, y_and_b, thumbstick, "XR_BD_controller_interaction"},
+    {"bytedance/pico4_controller", trigger, y_and_b, thumbstick, "XR_BD_controller_interaction"},
+    {"ext/hand_interaction_ext", "/input/pinch_ext/value", nullptr, nullptr, "XR_EXT_hand_interaction"},
 };
 
 }  // namespace
@@ -129,17 +132,14 @@ void Actions::make_actions(bool eye_gaze) {
 void Actions::suggest(bool eye_gaze) const {
   for (const Controller& one : controllers) {
     if (one.extension && !session_.xr().has(one.extension)) continue;
-    const bool hand = std::string_view(one.stick).empty() && one.extension;
     std::vector<Binding> bindings;
-    for (const std::string side : {"/user/hand/left", "/user/hand/right"}) {
-      bindings.push_back({select_, side + one.select});
-      bindings.push_back({aim_, side + "/input/aim/pose"});
-      if (*one.menu) bindings.push_back({menu_, side + one.menu});
-      if (*one.stick) bindings.push_back({stick_, side + one.stick});
+    for (const std::string hand : {"/user/hand/left", "/user/hand/right"}) {
+      bindings.push_back({select_, hand + one.select});
+      bindings.push_back({aim_, hand + "/input/aim/pose"});
+      if (one.stick) bindings.push_back({stick_, hand + one.stick});
+      if (one.menu && *one.menu) bindings.push_back({menu_, hand + one.menu});
     }
-    if (!*one.menu && !hand) {
-      // These controllers have no menu button with one name on both hands. The runtime may reserve the menu
-      // button of the left one.
+    if (one.menu && !*one.menu) {  // y_and_b
       bindings.push_back({menu_, "/user/hand/left/input/y/click"});
       bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }

@@ -127,10 +127,10 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
 }
 
 /// A time for a slot for which the runtime predicted none: a period after the last slot. base::Error if there
-/// was no slot before, or after many of these in a row.
+/// was no slot before, or after most_untimed of these in a row.
 XrTime HeadsetSession::Parts::time_for_untimed() {
   if (last_time > 0 && last_period > 0 && ++untimed <= most_untimed) return last_time + last_period;
-  throw base::Error("headset", "the runtime predicts no valid times for its frames",
+  throw DisplayGone(CutCause::Hang, "headset", "the runtime predicts no valid times for its frames",
                     "restart the headset's software; vip-study resume continues a session");
 }
 

@@ -74,7 +74,8 @@ void RateMeter::doubt() {
   if (period_ns_ == 0) reported_ns_ = 0;
 }
 
-/// The rate changes: removes the counts of the latest steps, because they are relative to the old rate.
+/// Removes the latest steps and their counts, because they refer to the old rate. Call it when the rate
+/// changes.
 void RateMeter::forget_latest() {
   for (const Step& step : latest_) {
     dropped_ -= step.dropped;
