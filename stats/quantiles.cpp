@@ -47,4 +47,9 @@ double sorted_quantile(std::span<const double> ascending, double p) {
   return std::lerp(ascending[low], ascending[high], at - static_cast<double>(low));
 }
 
+double median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return sorted_quantile(values, 0.5);
+}
+
 }  // namespace stats

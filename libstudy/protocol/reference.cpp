@@ -140,7 +140,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"procedure", "lapse", "list of numbers", "[0, 0.2]", "[0, 0.02, 0.04]", "lapse rates of the grid"},
       {"procedure", "fixed", "whole number", "[0, 500]", "0; ptpe: trials / 5, 2 or more",
        "quest_plus: first trials at levels spread evenly; ptpe: trials, spread over the session, at the "
-       "standard deviations between the ends"},
+       "middle one of the standard deviations"},
       {"procedure", "most_of_one", "whole number", "[1, 500]", "trials",
        "times that a level is chosen at most"},
 

@@ -126,7 +126,8 @@ std::string raters(const Field& pilot) {
   if (!all.exists()) return out;
   for (const auto& [name, part] : {std::pair{"Direction of the ratings", "reverse_coders"},
                                    {"Drift over the session", "drift"},
-                                   {"Lapses to the lowest score", "lapses"}})
+                                   {"Lapses to the lowest score", "lapses"},
+                                   {"Answers far from the score expected", "far_answers"}})
     if (!all[part]["text"].words().empty())
       out += paragraph(std::string(name) + ": " + words(all[part]["text"]) + ".");
   return out;

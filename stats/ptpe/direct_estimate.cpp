@@ -178,6 +178,10 @@ DirectEstimate estimate_direct(std::span<const PilotObservation> observations, d
       refuse_spread(out, without.reason());
     }
   }
+  // A curve of another form can leave the exponential without a fit. The test of the form then begins at the
+  // straight form's curve.
+  if (!out.jackknife && out.straight)
+    out.form = form_test(reach.kept, out.straight->curve, level, options.confidence);
   if (!out.straight) {
     out.straight_jackknife = Refusal{out.straight.reason()};
     return out;

@@ -96,7 +96,9 @@ struct DirectEstimate {
                                                             ///< (docs/statistics.md)
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
-  Result<FormTest> form = Refusal{"not computed"};  ///< test that the curve is an exponential (form_test.hpp)
+  Result<FormTest> form =
+      Refusal{"not computed"};  ///< test that the curve is an exponential (form_test.hpp); where the
+                                ///< exponential has no fit, from the straight form's curve
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 

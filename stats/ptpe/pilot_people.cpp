@@ -13,6 +13,7 @@
 
 #include "stats/gsl_errors.hpp"
 #include "stats/inference/t_test.hpp"
+#include "stats/ptpe/rating_surface.hpp"
 #include "stats/quantiles.hpp"
 
 namespace stats {
@@ -22,11 +23,6 @@ namespace {
 using Setting = std::pair<double, double>;
 
 Setting setting_of(const PilotRating& rating) { return {rating.mu, rating.delta}; }
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return sorted_quantile(values, 0.5);
-}
 
 std::map<int, std::vector<const PilotRating*>> by_person(std::span<const PilotRating> ratings) {
   std::map<int, std::vector<const PilotRating*>> out;
@@ -81,27 +77,20 @@ std::vector<PersonSlope> slopes_of(std::span<const PilotRating> ratings) {
   return out;
 }
 
-/// First and last position of each participant's trials.
-std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating> ratings) {
-  std::map<int, std::pair<double, double>> out;
+/// True if people rated settings of their own, as under adaptive placement: a setting has fewer scores than
+/// half of the people. Means and medians of a setting's scores then say little.
+bool settings_differ(std::span<const PilotRating> ratings) {
+  std::set<Setting> settings;
+  std::set<int> people;
   for (const auto& rating : ratings) {
-    const double at = rating.position;
-    auto& [first, last] = out.try_emplace(rating.participant, at, at).first->second;
-    first = std::min(first, at);
-    last = std::max(last, at);
+    settings.insert(setting_of(rating));
+    people.insert(rating.participant);
   }
-  return out;
+  return 2 * ratings.size() < people.size() * settings.size();
 }
 
-/// Position of a trial in its session, from -1/2 (first trial) to 1/2 (last trial).
-double place_of(const PilotRating& rating, const std::pair<double, double>& session) {
-  const double length = session.second - session.first;
-  return length > 0 ? (rating.position - session.first) / length - 0.5 : 0;
-}
-
-Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confidence) {
-  if (std::any_of(ratings.begin(), ratings.end(), [](const auto& rating) { return rating.position < 0; }))
-    return Refusal{"the positions of the trials are not known"};
+/// Each participant's slope over the session of the scores less the mean of the setting's other scores.
+std::vector<double> slopes_over_session(std::span<const PilotRating> ratings) {
   std::map<Setting, std::pair<double, double>> settings;  // number and sum of the scores
   for (const auto& rating : ratings) {
     auto& [n, sum] = settings[setting_of(rating)];
@@ -130,25 +119,35 @@ Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confi
     }
     if (xx > 0) slopes.push_back(xy / xx);
   }
-  const auto test = t_test_one(slopes, {.confidence = confidence, .effect_intervals = false});
+  return slopes;
+}
+
+Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confidence) {
+  if (std::any_of(ratings.begin(), ratings.end(), [](const auto& rating) { return rating.position < 0; }))
+    return Refusal{"the positions of the trials are not known"};
+  const auto changes = settings_differ(ratings) ? surface_changes(ratings) : slopes_over_session(ratings);
+  const auto test = t_test_one(changes, {.confidence = confidence, .effect_intervals = false});
   if (!test) return Refusal{test.reason()};
   return SessionDrift{test->mean, test->t, test->p, static_cast<int>(test->df), test->ci};
 }
 
 /// The expected score of each answer without lapses: the setting's median score plus the participant's median
-/// distance from such medians.
-std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
-  std::map<Setting, std::vector<double>> settings;
-  for (const auto& rating : ratings) settings[setting_of(rating)].push_back(rating.score);
-  std::map<Setting, double> middle;
-  for (const auto& [setting, scores] : settings) middle[setting] = median(scores);
-  std::map<int, std::vector<double>> distances;
-  for (const auto& rating : ratings)
-    distances[rating.participant].push_back(rating.score - middle[setting_of(rating)]);
-  std::map<int, double> own;
-  for (const auto& [person, list] : distances) own[person] = median(list);
+/// distance from such medians. Where settings_differ(), surface_scores() stand in for the medians.
+std::vector<double> expected_scores(std::span<const PilotRating> ratings, bool by_surface) {
   std::vector<double> out;
-  for (const auto& rating : ratings) out.push_back(middle[setting_of(rating)] + own[rating.participant]);
+  if (by_surface) {
+    out = surface_scores(ratings);
+  } else {
+    std::map<Setting, std::vector<double>> settings;
+    for (const auto& rating : ratings) settings[setting_of(rating)].push_back(rating.score);
+    for (const auto& rating : ratings) out.push_back(median_of(settings[setting_of(rating)]));
+  }
+  std::map<int, std::vector<double>> distances;
+  for (std::size_t i = 0; i < ratings.size(); ++i)
+    distances[ratings[i].participant].push_back(ratings[i].score - out[i]);
+  std::map<int, double> own;
+  for (const auto& [person, list] : distances) own[person] = median_of(list);
+  for (std::size_t i = 0; i < ratings.size(); ++i) out[i] += own[ratings[i].participant];
   return out;
 }
 
@@ -171,30 +170,43 @@ Result<double> spread_about(std::span<const PilotRating> ratings, const std::vec
   return std::sqrt(M_PI / 2) * sum / n;
 }
 
-Result<LapseCount> lapses_of(std::span<const PilotRating> all, const std::vector<PersonSlope>& slopes) {
+/// The answers of all but reverse coders, with their expected scores and the standard deviation about them.
+struct Expected {
+  std::vector<PilotRating> ratings;
+  std::vector<double> scores;
+  double sd = 0, lowest = 0, highest = 0;
+};
+
+Result<Expected> expected_of(std::span<const PilotRating> all, const std::vector<PersonSlope>& slopes,
+                             bool by_surface) {
   std::set<int> reversed;
   for (const auto& one : slopes)
     if (one.reversed) reversed.insert(one.participant);
-  std::vector<PilotRating> ratings;
+  Expected out;
   for (const auto& rating : all)
-    if (!reversed.contains(rating.participant)) ratings.push_back(rating);
-  if (ratings.empty()) return Refusal{"every participant is a reverse coder"};
-  LapseCount out;
-  out.lowest = ratings.front().score;
-  double highest = ratings.front().score;
-  for (const auto& rating : ratings) {
+    if (!reversed.contains(rating.participant)) out.ratings.push_back(rating);
+  if (out.ratings.empty()) return Refusal{"every participant is a reverse coder"};
+  out.lowest = out.highest = out.ratings.front().score;
+  for (const auto& rating : out.ratings) {
     out.lowest = std::min(out.lowest, rating.score);
-    highest = std::max(highest, rating.score);
+    out.highest = std::max(out.highest, rating.score);
   }
-  const auto expected = expected_scores(ratings);
-  if (highest == out.lowest) return Refusal{"all answers are equal"};
-  const auto sd = spread_about(ratings, expected, out.lowest, highest);
+  if (out.highest == out.lowest) return Refusal{"all answers are equal"};
+  out.scores = expected_scores(out.ratings, by_surface);
+  const auto sd = spread_about(out.ratings, out.scores, out.lowest, out.highest);
   if (!sd) return Refusal{sd.reason()};
-  for (std::size_t i = 0; i < ratings.size(); ++i) {
-    const double chance = normal_probability((out.lowest + 0.5 - expected[i]) / *sd);
+  out.sd = *sd;
+  return out;
+}
+
+Result<LapseCount> lapses_of(const Expected& expected) {
+  LapseCount out;
+  out.lowest = expected.lowest;
+  for (std::size_t i = 0; i < expected.ratings.size(); ++i) {
+    const double chance = normal_probability((out.lowest + 0.5 - expected.scores[i]) / expected.sd);
     if (chance >= lapse_tail) continue;
     ++out.at_risk;
-    out.lapsed += ratings[i].score == out.lowest;
+    out.lapsed += expected.ratings[i].score == out.lowest;
     out.expected += chance;
   }
   if (out.at_risk == 0) return Refusal{"the lowest score is improbable at no setting"};
@@ -204,10 +216,34 @@ Result<LapseCount> lapses_of(std::span<const PilotRating> all, const std::vector
   return out;
 }
 
+FarAnswers far_of(const Expected& expected) {
+  FarAnswers out;
+  for (std::size_t i = 0; i < expected.ratings.size(); ++i) {
+    const double middle = expected.scores[i], given = expected.ratings[i].score;
+    ++out.answers;
+    // On each side the chance of the nearest score from which on scores are improbable.
+    const auto side = [&](double first, double step) {
+      for (double score = first; score >= expected.lowest && score <= expected.highest; score += step) {
+        const double chance = normal_probability((step * (middle - score) + 0.5) / expected.sd);
+        if (chance >= lapse_tail) continue;
+        out.expected += chance;
+        out.far += step * (given - score) >= 0;
+        return;
+      }
+    };
+    side(std::ceil(middle), 1);
+    side(std::floor(middle), -1);
+  }
+  use_gsl_codes();
+  if (out.far > 0) out.p = gsl_cdf_poisson_Q(static_cast<unsigned>(out.far - 1), out.expected);
+  return out;
+}
+
 }  // namespace
 
 bool SessionDrift::found() const { return p < drift_level; }
 bool LapseCount::found() const { return p < lapse_level; }
+bool FarAnswers::found() const { return p < far_level; }
 
 int PilotPeople::reversed() const {
   return static_cast<int>(
@@ -215,10 +251,20 @@ int PilotPeople::reversed() const {
 }
 
 PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence) {
-  if (ratings.empty()) return {{}, Refusal{"no ratings"}, Refusal{"no ratings"}};
-  auto slopes = slopes_of(ratings);
-  auto lapses = lapses_of(ratings, slopes);
-  return {std::move(slopes), drift_of(ratings, confidence), std::move(lapses)};
+  PilotPeople out;
+  if (ratings.empty()) {
+    out.drift = Refusal{"no ratings"};
+    out.lapses = Refusal{"no ratings"};
+    out.far = Refusal{"no ratings"};
+    return out;
+  }
+  out.slopes = slopes_of(ratings);
+  out.drift = drift_of(ratings, confidence);
+  const auto expected = expected_of(ratings, out.slopes, settings_differ(ratings));
+  out.lapses = expected ? lapses_of(*expected) : Refusal{expected.reason()};
+  const auto smooth = expected_of(ratings, out.slopes, true);
+  out.far = smooth ? Result<FarAnswers>(far_of(*smooth)) : Refusal{smooth.reason()};
+  return out;
 }
 
 std::vector<PilotRating> apply_rules(std::span<const PilotRating> ratings, const PilotPeople& people,

@@ -33,7 +33,9 @@ struct PersonSlope {
 
 /// Drift from the first to the last trial of a session, in points of the scale: t test of the participants'
 /// slopes over position. A participant's slope is that of each score minus the mean of all other scores of
-/// the same setting.
+/// the same setting. Where the settings have fewer scores than half of the people, as under adaptive
+/// placement: the coefficient of the position in a surface fitted to all scores with a mean for each
+/// participant, with the jackknife over participants.
 struct SessionDrift {
   double change = 0, t = 0, p = 1;
   int df = 0;
@@ -43,7 +45,8 @@ struct SessionDrift {
 
 /// Lapses: answers at the lowest score that are improbable (below lapse_tail, by a normal distribution) given
 /// the expected score: the setting's median score plus the participant's own median distance from such
-/// medians. Reverse coders are left out.
+/// medians. Where the settings have fewer scores than half of the people, a surface fitted to all scores
+/// stands in for the settings' medians. Reverse coders are left out.
 struct LapseCount {
   int at_risk = 0;      ///< answers for which the lowest score is improbable
   int lapsed = 0;       ///< of these, answers at the lowest score
@@ -54,24 +57,37 @@ struct LapseCount {
   bool found() const;
 };
 
+/// Answers far from the expected score of LapseCount, above or below it, at any score: those that a normal
+/// distribution makes improbable (below lapse_tail on their side). People who answer at random in a part of
+/// the trials give more of them than expected. Reverse coders are left out.
+struct FarAnswers {
+  int answers = 0;      ///< answers looked at
+  int far = 0;          ///< of these, answers far from the expected score
+  double expected = 0;  ///< expected number of `far`
+  double p = 1;         ///< Poisson probability of `far` or more such answers
+  bool found() const;
+};
+
 /// Level of PersonSlope::reversed, divided by the number of participants with a slope (Bonferroni).
 inline constexpr double reverse_level = 0.01;
 inline constexpr double drift_level = 0.05;   ///< level of SessionDrift::found(), two-sided
 inline constexpr double lapse_tail = 0.005;   ///< below this probability the lowest score is improbable
 inline constexpr double lapse_level = 0.001;  ///< level of LapseCount::found()
+inline constexpr double far_level = 0.01;     ///< level of FarAnswers::found()
 
 struct PilotPeople {
   std::vector<PersonSlope> slopes;  ///< slopes of participants with at least three more ratings than rated
                                     ///< standard deviations of the frame rate
   Result<SessionDrift> drift = Refusal{"not computed"};
   Result<LapseCount> lapses = Refusal{"not computed"};
+  Result<FarAnswers> far = Refusal{"not computed"};
 
   int reversed() const;
 };
 
-/// `drift` is refused, for example, if a trial's position is not known. `lapses` are refused, for example, if
-/// the standard deviation about the expected scores cannot be estimated, or if the lowest score is improbable
-/// at no setting.
+/// `drift` is refused, for example, if a trial's position is not known. `lapses` and `far` are refused, for
+/// example, if the standard deviation about the expected scores cannot be estimated, or if the lowest score
+/// is improbable at no setting.
 PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence);
 
 /// Applies the rules to the ratings; drift is subtracted relative to the middle of the session.

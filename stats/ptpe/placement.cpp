@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace stats {
@@ -13,6 +14,8 @@ namespace {
 constexpr int grid_points = 13;
 constexpr double largest_b = 0.1;  // s/frame
 
+/// Share of this person's own estimate in the estimated contour; the rest is that of all people.
+constexpr double own_share = 1.0 / 3;
 /// Trials at the ends: whether a trial uses the smallest standard deviation. The contour there is a, and b is
 /// its slope, so that trials at the smallest one determine both.
 constexpr std::array at_smallest{true, false, true, true};
@@ -55,14 +58,11 @@ QuestPlus make_quest(const std::vector<PlacementSetting>& settings, const Placem
   return {static_cast<int>(settings.size()), prior.highest - prior.lowest + 1, even, chance};
 }
 
-/// Standard deviations between the ends: the middle one first, then the others by their distance from it.
-/// `deltas` is ascending.
-std::vector<double> inner_deltas(const std::vector<double>& deltas) {
-  if (deltas.size() < 3) return {};
-  std::vector<double> inner(deltas.begin() + 1, deltas.end() - 1);
-  const double middle = inner[(inner.size() - 1) / 2];
-  std::ranges::stable_sort(inner, {}, [&](double delta) { return std::abs(delta - middle); });
-  return inner;
+/// The standard deviation of the trials between the ends: the middle one of those between the smallest and
+/// the largest. Empty if there is none. `deltas` is ascending.
+std::optional<double> inner_delta(const std::vector<double>& deltas) {
+  if (deltas.size() < 3) return std::nullopt;
+  return deltas[(deltas.size() - 1) / 2];
 }
 
 /// Number of trials between the ends among the first `trials` ones of a session. Trial j of them is at
@@ -86,12 +86,10 @@ PlacementTurn turn_of(const PlacementRules& rules, const std::vector<double>& de
   const auto nth = [](const auto& values, int n) {
     return values[static_cast<std::size_t>(n) % values.size()];
   };
-  const auto inner = inner_deltas(deltas);
-  const int before = inner.empty() ? 0 : inner_before(rules, trial);
-  if (!inner.empty() && inner_before(rules, trial + 1) > before) {
-    const int turn = before + person;
-    return {nth(inner, turn), nth(inner_distances, turn + turn / static_cast<int>(inner.size()))};
-  }
+  const auto inner = inner_delta(deltas);
+  const int before = inner ? inner_before(rules, trial) : 0;
+  if (inner && inner_before(rules, trial + 1) > before)
+    return {*inner, nth(inner_distances, before + person)};
   const int ends = trial - before;
   const bool smallest = nth(at_smallest, ends);
   int same = person;  // trials at this end before, shifted by the person's number
@@ -158,7 +156,8 @@ int Placement::next() const {
   const auto [delta, distance] = turn_of(rules_, deltas_, person_, static_cast<int>(shown_.size()));
   const double own_a = grid_estimate(a_values_, own_.posterior()).mean;
   const double own_b = grid_estimate(b_values_, own_.posterior()).mean;
-  const double contour = std::sqrt(a().mean * own_a) * std::exp((b().mean + own_b) / 2 * delta);
+  const double contour = std::exp(std::lerp(std::log(a().mean), std::log(own_a), own_share) +
+                                  std::lerp(b().mean, own_b, own_share) * delta);
   const double wanted = contour * std::pow(rules_.bracket, distance);
   // Finds the setting nearest to `wanted`. A setting of another standard deviation (delta) is taken only if
   // none of this one may be shown again.

@@ -7,10 +7,11 @@
 /// So the settings lie above, on and below the present estimate of the contour in turn. Those on it determine
 /// the contour whatever the curvature of the ratings about it, the others their slope. The turns of
 /// successive people begin at different places, so that all distances occur early and late. The estimate lies
-/// half-way between that of this person and that of all people, because settings that follow each person's
-/// own taste would hide how much people differ. Three of four trials use the smallest standard deviation, the
-/// fourth the largest: there a and b are determined best. Some trials, spread over the session, use those
-/// between. Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at random
+/// a third of the way from that of all people to that of this person, because settings that follow each
+/// person's own taste would hide how much people differ. Three of four trials use the smallest standard
+/// deviation, the fourth the largest: there a and b are determined best. Some trials, spread over the
+/// session, use the middle one of those between, where a contour of another form lies farthest from an
+/// exponential. Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at random
 /// (docs/decisions.md).
 
 #include <cstddef>
@@ -50,9 +51,9 @@ PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 /// Rules of one session.
 struct PlacementRules {
   int trials = 10;  ///< planned number of trials of the session
-  /// Number of trials, spread evenly over the session, that use the standard deviations between the smallest
-  /// and the largest in turn. Without such trials the form of the contour, the just satisfactory mean frame
-  /// rate over the standard deviation, cannot be checked, and estimate_direct() has no fit.
+  /// Number of trials, spread evenly over the session, that use the middle one of the standard deviations
+  /// between the smallest and the largest. Without such trials the form of the contour, the just satisfactory
+  /// mean frame rate over the standard deviation, cannot be checked, and estimate_direct() has no fit.
   int between = 2;
   /// Factor, above 1, between the estimated contour and the mean frame rates that are shown above and below
   /// it.

@@ -8,16 +8,19 @@
 
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/pilot.hpp"
+#include "stats/ptpe/pilot_people.hpp"
 
 namespace stats {
 namespace {
 
-constexpr std::array placement_truth_words{"model", "linear", "lapses", "drift"};
+constexpr std::array placement_truth_words{"model", "linear", "hinge", "lapses", "lowest lapses", "drift"};
 constexpr double true_slope = 0.14;     // scores per frame/s
 constexpr double true_person_sd = 0.5;  // scores
 constexpr double lapse_share = 0.1;
 /// Standard deviation in frames/s: the straight contour and the exponential meet here and at 0.
 constexpr double line_end = 20;
+/// The hinge begins to rise here, frames/s.
+constexpr double hinge_begin = 10;
 constexpr int lowest_score = 1, highest_score = 7;
 constexpr double middle_score = 4;
 
@@ -29,6 +32,7 @@ class Rater {
   }
 
   int rate(const PlacementSetting& setting, double progress) {
+    if (study_.truth == PlacementTruth::LowestLapses && uniform_(random_) < lapse_share) return lowest_score;
     if (study_.truth == PlacementTruth::Lapses && uniform_(random_) < lapse_share)
       return lowest_score + static_cast<int>(uniform_(random_) * (highest_score - lowest_score + 1));
     const double drift = study_.truth == PlacementTruth::Drift ? 0.5 - progress : 0;
@@ -39,8 +43,11 @@ class Rater {
 
  private:
   double contour(double delta) const {
-    if (study_.truth != PlacementTruth::Linear) return study_.a * std::exp(study_.b * delta);
-    return study_.a + study_.a * std::expm1(study_.b * line_end) * delta / line_end;
+    const double rise = study_.a * std::expm1(study_.b * line_end);  // of the contour from 0 to line_end
+    if (study_.truth == PlacementTruth::Linear) return study_.a + rise * delta / line_end;
+    if (study_.truth == PlacementTruth::Hinge)
+      return study_.a + rise * std::max(0.0, delta - hinge_begin) / (line_end - hinge_begin);
+    return study_.a * std::exp(study_.b * delta);
   }
 
   const PlacementStudy& study_;
@@ -51,7 +58,7 @@ class Rater {
 };
 
 struct OneStudy {
-  bool fitted = false, form_rejected = false;
+  bool fitted = false, form_rejected = false, drift_found = false, lapses_found = false, far_found = false;
   double log_a_width = 0, b_width = 0, a = 0;
   bool a_covered = false, b_covered = false;
 };
@@ -78,18 +85,22 @@ OneStudy run_study(const PlacementStudy& study, const std::vector<PlacementSetti
         known.learn(index, score);
       }
       ratings.push_back({person, setting.mu, setting.delta, setting.mu, setting.mu, setting.delta,
-                         static_cast<double>(score)});
+                         static_cast<double>(score), trial});
     }
   }
   const auto observations = PilotTable(ratings).observations(PilotMean::Harmonic);
   BootstrapOptions none;
   none.resamples = 0;
   const DirectEstimate estimate = estimate_direct(observations, middle_score, none);
+  const PilotPeople people = pilot_people(ratings, none.confidence);
   OneStudy out;
+  out.drift_found = people.drift && people.drift->found();
+  out.lapses_found = people.lapses && people.lapses->found();
+  out.far_found = people.far && people.far->found();
+  out.form_rejected = estimate.form && estimate.form->rejected();
   if (!estimate.jackknife) return out;
   const CurveSpread& spread = *estimate.jackknife;
   out.fitted = true;
-  out.form_rejected = estimate.form && estimate.form->rejected();
   out.a = spread.curve.a();
   out.log_a_width = std::log(spread.a_ci[1] / spread.a_ci[0]);
   out.b_width = spread.b_ci[1] - spread.b_ci[0];
@@ -120,6 +131,10 @@ PlacementSummary simulate_placement(const PlacementStudy& study, const std::vect
   PlacementSummary out;
   out.studies = studies;
   for (const OneStudy& one : all) {
+    out.form_rejected += one.form_rejected;
+    out.drift_found += one.drift_found;
+    out.lapses_found += one.lapses_found;
+    out.far_found += one.far_found;
     if (!one.fitted) continue;
     ++out.fitted;
     out.a_width += one.log_a_width;
@@ -127,11 +142,11 @@ PlacementSummary simulate_placement(const PlacementStudy& study, const std::vect
     out.a_covered += one.a_covered;
     out.b_covered += one.b_covered;
     out.a_bias += one.a / study.a - 1;
-    out.form_rejected += one.form_rejected;
   }
-  for (double* sum :
-       {&out.a_width, &out.b_width, &out.a_covered, &out.b_covered, &out.a_bias, &out.form_rejected})
+  for (double* sum : {&out.a_width, &out.b_width, &out.a_covered, &out.b_covered, &out.a_bias})
     *sum /= std::max(1, out.fitted);
+  for (double* sum : {&out.form_rejected, &out.drift_found, &out.lapses_found, &out.far_found})
+    *sum /= std::max(1, studies);
   return out;
 }
 

@@ -15,11 +15,13 @@ enum class PlacementTruth {
   Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; all people have the
            ///< same a and b
   Linear,  ///< the contour is a straight line that meets a exp(b delta) at delta = 0 and 20 frames/s
+  Hinge,   ///< the contour is a up to delta = 10 and then a straight line that meets a exp(b delta) at 20
   Lapses,  ///< a tenth of the ratings are random scores
-  Drift    ///< ratings fall steadily, by about one score over the session
+  LowestLapses,  ///< a tenth of the ratings are the lowest score
+  Drift          ///< ratings fall steadily, by about one score over the session
 };
 
-/// The case in a word: "model", "linear", "lapses", "drift".
+/// The case in a word or two: "model", "linear", "hinge", "lapses", "lowest lapses", "drift".
 const char* placement_truth_word(PlacementTruth truth);
 
 struct PlacementStudy {
@@ -40,6 +42,9 @@ struct PlacementSummary {
   double a_covered = 0, b_covered = 0;  ///< shares of the intervals that hold the truth
   double a_bias = 0;                    ///< mean error of a as a share of a
   double form_rejected = 0;             ///< share of studies in which the form test rejects an exponential
+  double drift_found = 0;   ///< share of studies in which SessionDrift::found() (pilot_people.hpp)
+  double lapses_found = 0;  ///< share of studies in which LapseCount::found() (pilot_people.hpp)
+  double far_found = 0;     ///< share of studies in which FarAnswers::found() (pilot_people.hpp)
 };
 
 /// `fixed`: the settings of studies that are not adaptive; `candidates`: those that an adaptive study may

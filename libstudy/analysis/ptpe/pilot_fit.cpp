@@ -257,7 +257,11 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
     fit.arithmetic[at] = fit_level(categories, table, PilotMean::Arithmetic, at, options);
   }
   fit.reason = unusable(fit, data, table);
-  if (fit.ok()) {
+  if (!fit.ok()) {
+    // A contour of another form can be why there is no fit.
+    const auto form = stats::form_doubt(fit.chosen().direct);
+    if (form && !fit.chosen().direct.jackknife) fit.reason += "; " + form->text;
+  } else {
     const LevelFit& chosen = fit.chosen();
     fit.doubts = stats::pilot_doubts(table, chosen.direct, chosen.contour, chosen.ordinal);
     if (auto form = stats::form_doubt(chosen.direct)) fit.doubts.push_back(std::move(*form));

@@ -42,6 +42,11 @@ std::string lapse_text(const stats::LapseCount& lapses) {
       lapses.lapsed, lapses.at_risk, lapses.expected, p_words(lapses.p), 100 * lapses.rate);
 }
 
+std::string far_text(const stats::FarAnswers& far) {
+  return fmt::format("{} of {} answers are far from the score expected, {:.1f} expected, {}", far.far,
+                     far.answers, far.expected, p_words(far.p));
+}
+
 }  // namespace
 
 Json raters_json(const PilotFit& fit) {
@@ -71,13 +76,22 @@ Json raters_json(const PilotFit& fit) {
   } else {
     lapses["refused"] = fit.people.lapses.reason();
   }
+  Json far = Json::object();
+  if (fit.people.far) {
+    const auto& count = *fit.people.far;
+    far = {{"answers", count.answers}, {"far", count.far},       {"expected", count.expected}, {"p", count.p},
+           {"found", count.found()},   {"text", far_text(count)}};
+  } else {
+    far["refused"] = fit.people.far.reason();
+  }
   return {{"reverse_coders",
            {{"rule", fit.rules.exclude_reverse_coders ? "exclude" : "keep"},
             {"found", fit.people.reversed()},
             {"tested", fit.people.slopes.size()},
             {"text", reversed_text(fit)}}},
           {"drift", drift},
-          {"lapses", lapses}};
+          {"lapses", lapses},
+          {"far_answers", far}};
 }
 
 std::vector<std::string> reverse_coders(const PilotFit& fit) {
@@ -107,6 +121,9 @@ std::vector<FitFlag> rater_flags(const PilotFit& fit) {
         {"lapses", lapse_text(*fit.people.lapses) +
                        (fit.rules.model_lapses ? "; the scores are corrected by that rate, as the plan says"
                                                : "; kept in the scores, as the plan does not model them")});
+  if (fit.people.far && fit.people.far->found())
+    out.push_back({"far_answers", far_text(*fit.people.far) +
+                                      "; people may have answered at random in a part of the trials"});
   return out;
 }
 

@@ -125,6 +125,66 @@ TEST(PilotPeople, LapsesAreFoundAndMoveNoMeanUnderTheRule) {
   EXPECT_NEAR(mean(stats::apply_rules(ratings, people, {.model_lapses = true})), mean(clean), 0.5 * lost);
 }
 
+namespace {
+
+/// Ten settings for each person, near the person's own contour and all of them different, as adaptive
+/// placement gives them.
+std::vector<stats::PilotRating> own_settings(const Raters& raters, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<stats::PilotRating> ratings;
+  for (int p = 0; p < raters.people; ++p) {
+    const double person = 0.5 * normal(engine);
+    for (int i = 0; i < 10; ++i) {
+      const double delta = 10 * (i % 3), contour = 24 * std::exp(0.02 * delta);
+      const double mu = (contour - 2 * person) * std::exp(0.7 * uniform(engine) - 0.35);
+      const double x =
+          4 + 0.14 * (mu - contour) + person + raters.drift * (i / 9.0 - 0.5) + 0.9 * normal(engine);
+      const double score = uniform(engine) < raters.lapses ? 1 : std::clamp(std::round(x), 1.0, 7.0);
+      ratings.push_back({p, mu, delta, mu, mu, delta, score, i});
+    }
+  }
+  return ratings;
+}
+
+}  // namespace
+
+TEST(PilotPeople, DriftAndLapsesAreFoundWherePeopleRatedSettingsOfTheirOwn) {
+  int drift_found = 0, lapses_found = 0, false_drift = 0, false_lapses = 0;
+  double change = 0, rate = 0;
+  constexpr int studies = 40;
+  for (int seed = 1; seed <= studies; ++seed) {
+    const auto same = stats::pilot_people(own_settings({}, seed), 0.95);
+    false_drift += same.drift->found();
+    false_lapses += same.lapses->found();
+    const auto drifting = stats::pilot_people(own_settings({.drift = -1.5}, seed), 0.95);
+    drift_found += drifting.drift->found();
+    change += drifting.drift->change / studies;
+    const auto lapsing = stats::pilot_people(own_settings({.lapses = 0.1}, seed), 0.95);
+    lapses_found += lapsing.lapses->found();
+    rate += lapsing.lapses->rate / studies;
+  }
+  EXPECT_GE(drift_found, 36);
+  EXPECT_NEAR(change, -1.5, 0.15);
+  EXPECT_GE(lapses_found, 36);
+  EXPECT_NEAR(rate, 0.1, 0.03);
+  EXPECT_LE(false_drift, 6);
+  EXPECT_LE(false_lapses, 2);
+}
+
+TEST(PilotPeople, RandomAnswersInAPartOfTheTrialsAreFound) {
+  auto ratings = pilot({}, 3);
+  const auto before = stats::pilot_people(ratings, 0.95);
+  ASSERT_TRUE(before.far);
+  EXPECT_FALSE(before.far->found());
+  EXPECT_EQ(before.far->answers, 16 * 21);
+  for (std::size_t i = 0; i < ratings.size(); i += 8) ratings[i].score = 1 + static_cast<double>(i / 8 % 7);
+  const auto after = stats::pilot_people(ratings, 0.95);
+  EXPECT_TRUE(after.far->found());
+  EXPECT_GT(after.far->far, before.far->far + 5);
+}
+
 TEST(PilotPeople, WithoutAScatterTheReasonOfNoLapsesIsTheTrueOne) {
   const auto reason = [](double low, double middle, double high) {
     std::vector<stats::PilotRating> ratings;
