@@ -9,10 +9,11 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/stats/cell_options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "libstudy/analysis/plan_file.hpp"
-#include "libstudy/analysis/rivals/compare_models.hpp"
+#include "libstudy/analysis/rivals/rival_shards.hpp"
 #include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -22,13 +23,14 @@ namespace apps {
 namespace {
 
 struct CompareCommand {
-  std::string database, json, plan, bundle, models;
+  std::string database, json, plan, bundle, models, out;
   std::optional<std::string> exclude;
   std::optional<std::uint64_t> seed;
   int folds = 0;
   bool folds_given = false;
   bool incomplete = false;
   ChoiceOptions choice;
+  CellOptions cells;
 
   study::StudyFile file() const { return {database, incomplete}; }
 };
@@ -131,7 +133,8 @@ void print_proposals(const study::Json& json) {
 }
 
 void compare_models(const CompareCommand& command) {
-  check_apart(command.database, {{"--json", command.json}, {"--plan", command.plan}});
+  check_apart(command.database, {{"--json", command.json}, {"--plan", command.plan}, {"--out", command.out}});
+  check_shards_kept(command.cells, {{"--json", command.json}});
   study::PlanInForce in_force;
   const std::string plan_file =
       command.bundle.empty() ? command.plan : (std::filesystem::path(command.bundle) / "plan.toml").string();
@@ -149,7 +152,8 @@ void compare_models(const CompareCommand& command) {
   if (declared && choice.question.empty()) choice.question = declared->question;
   const int folds = declared && !command.folds_given ? declared->folds : command.folds;
   const auto study = study::read_tasks(command.file());
-  if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
+  if (!study.lacking.empty())
+    std::fprintf(command.cells.list ? stderr : stdout, "incomplete: %s\n", study.lacking.c_str());
   std::string mend;
   const auto chosen = study::choose_rated_task(study, choice.selection(study::TaskKind::Pilot, plan), mend);
   if (!chosen) throw base::Error(command.database, "no comparison: " + chosen.reason(), mend);
@@ -165,7 +169,14 @@ void compare_models(const CompareCommand& command) {
                           ? "give at most as many groups, or leave it out"
                           : "give --folds with at most as many groups; the result is then exploratory");
   const stats::RivalComparisonOptions options{folds, command.seed.value_or(plan.seed), {}};
-  const auto comparison = study::compare_timing_models(data, models, options);
+  if (command.cells.list) return print_cells(study::rival_cells(data, models, options));
+  if (const auto& key = command.cells.cell; !key.empty())
+    return study::run_rival_cell(
+        data, models, options, study::find_cell(study::rival_cells(data, models, options), key), command.out);
+  std::optional<study::RivalFits> without;
+  if (!command.cells.shards.empty())
+    without = study::join_rival_shards(data, models, options, command.cells.shards);
+  const auto comparison = study::compare_timing_models(data, models, options, without ? &*without : nullptr);
   if (!comparison)
     throw base::Error(command.database, "no comparison: " + comparison.reason(),
                       "choose other --models, or collect more answers");
@@ -182,6 +193,43 @@ void compare_models(const CompareCommand& command) {
   print_proposals(json);
 }
 
+/// Adds the options of the calculation and of its results, which `compare-models` and `compare-models merge`
+/// share. Returns --folds.
+CLI::Option* add_compare_options(CLI::App& sub, CompareCommand& command) {
+  add_incomplete(sub, command.incomplete);
+  add_protocol_choice(sub, command.choice);
+  sub.add_option("--question", command.choice.question, "Id of the question; needed if several are rated");
+  sub.add_option(
+      "--models", command.models,
+      "Models, separated by commas: ptpe, mean_rate, arithmetic_rate, rate_sd, frame_time_sd, p95, "
+      "p99, longest, hitches, steps, animation_error, or two of these joined by '+'; without: the usual "
+      "eight");
+  auto* folds = add_count(sub, "--folds", command.folds, 0, 1000,
+                          "Groups of people that are left out in turn; 0: each person by themselves");
+  sub.add_option("--seed", command.seed, "Seed of the groups, instead of the plan's (default: 1)");
+  sub.add_option("--json", command.json, "File for every number (docs/statistics.md)")->check(output_file());
+  auto* plan = sub.add_option(
+      "--plan", command.plan,
+      "Analysis plan (TOML) with the rules of exclusion and, as [model_comparison], the question and "
+      "the models; without: the defaults");
+  sub.add_option("--preregistered", command.bundle,
+                 "Folder of vip-stats preregister: its plan is used, and the comparison that it declares is "
+                 "confirmatory if it is intact, holds the protocol and is older than the first answer")
+      ->excludes(plan);
+  sub.add_option("--exclude", command.exclude,
+                 "Trials left out by timing verdict, instead of what the plan says (default: fail)")
+      ->check(CLI::IsMember({"none", "fail", "degraded"}));
+  return folds;
+}
+
+void compare_with(CompareCommand& command, const CLI::Option& folds) {
+  command.folds_given = folds.count() > 0;
+  check_given(command.database);
+  if (command.folds == 1)
+    throw base::Error("--folds 1", "leaves nobody to fit", "give 0, or 2 and more groups");
+  compare_models(command);
+}
+
 }  // namespace
 
 void add_compare_models_command(CLI::App& app) {
@@ -189,36 +237,20 @@ void add_compare_models_command(CLI::App& app) {
   auto* sub = app.add_subcommand("compare-models",
                                  "Which property of the frame timing predicts people's answers best");
   add_database_argument(*sub, command->database);
-  add_incomplete(*sub, command->incomplete);
-  add_protocol_choice(*sub, command->choice);
-  sub->add_option("--question", command->choice.question, "Id of the question; needed if several are rated");
-  sub->add_option(
-      "--models", command->models,
-      "Models, separated by commas: ptpe, mean_rate, arithmetic_rate, rate_sd, frame_time_sd, p95, "
-      "p99, longest, hitches, steps, animation_error, or two of these joined by '+'; without: the usual "
-      "eight");
-  auto* folds = add_count(*sub, "--folds", command->folds, 0, 1000,
-                          "Groups of people that are left out in turn; 0: each person by themselves");
-  sub->add_option("--seed", command->seed, "Seed of the groups, instead of the plan's (default: 1)");
-  sub->add_option("--json", command->json, "File for every number (docs/statistics.md)")
-      ->check(output_file());
-  auto* plan = sub->add_option(
-      "--plan", command->plan,
-      "Analysis plan (TOML) with the rules of exclusion and, as [model_comparison], the question and "
-      "the models; without: the defaults");
-  sub->add_option("--preregistered", command->bundle,
-                  "Folder of vip-stats preregister: its plan is used, and the comparison that it declares is "
-                  "confirmatory if it is intact, holds the protocol and is older than the first answer")
-      ->excludes(plan);
-  sub->add_option("--exclude", command->exclude,
-                  "Trials left out by timing verdict, instead of what the plan says (default: fail)")
-      ->check(CLI::IsMember({"none", "fail", "degraded"}));
-  sub->callback([command, folds] {
-    command->folds_given = folds->count() > 0;
-    check_given(command->database);
-    if (command->folds == 1)
-      throw base::Error("--folds 1", "leaves nobody to fit", "give 0, or 2 and more groups");
-    compare_models(*command);
+  auto* folds = add_compare_options(*sub, *command);
+  auto* out = sub->add_option("--out", command->out, "File of --cell, a shard")->check(output_file());
+  add_cells(*sub, command->cells, out, {"--json"});
+  out->needs("--cell");
+  CLI::Option* merged_folds = nullptr;
+  auto* merge = add_merge(*sub, command->cells, command->database,
+                          [&](CLI::App& merged) { merged_folds = add_compare_options(merged, *command); });
+  merge->callback([command, merged_folds] {
+    take_database(command->cells, command->database);
+    read_shard_names(command->cells);
+    compare_with(*command, *merged_folds);
+  });
+  sub->callback([command, merge, folds] {
+    if (!merge->parsed()) compare_with(*command, *folds);
   });
 }
 

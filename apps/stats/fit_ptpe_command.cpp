@@ -7,17 +7,20 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/common/options.hpp"
+#include "apps/stats/cell_options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/fit_text.hpp"
 #include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/ptpe/calibration_history.hpp"
+#include "libstudy/analysis/ptpe/fit_shards.hpp"
 #include "libstudy/analysis/ptpe/heat_map.hpp"
 #include "libstudy/analysis/ptpe/pilot_fit.hpp"
 #include "libstudy/analysis/ptpe/truth.hpp"
@@ -43,6 +46,7 @@ struct FitCommand {
   bool incomplete = false;
   std::string lacking;  ///< description of what an incomplete database lacks; empty: complete
   ChoiceOptions choice;
+  CellOptions cells;
   stats::AnalysisPlan rules;  ///< the analysis plan, of --plan or the default
   stats::BootstrapOptions bootstrap;
 
@@ -180,7 +184,14 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const stu
            data.flow.trials_excluded > 0 ? "collect answers, or choose another --exclude or --plan"
                                          : "collect answers");
   }
-  const auto fit = study::fit_pilot(data, level, command.bootstrap, command.rules.pilot);
+  const study::FitRequest request{data, level, command.bootstrap, command.rules.pilot};
+  if (command.cells.list) return print_cells(study::fit_cells(request));
+  if (const auto& key = command.cells.cell; !key.empty())
+    return study::run_fit_cell(request, study::find_cell(study::fit_cells(request), key), command.out);
+  std::optional<study::FitResamples> drawn;
+  if (!command.cells.shards.empty()) drawn = study::join_fit_shards(request, command.cells.shards);
+  const auto fit =
+      study::fit_pilot(data, level, command.bootstrap, command.rules.pilot, drawn ? &*drawn : nullptr);
   if (truth) study::check_comparable(fit, command.truth);
   report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fitted_name(chosen), fit.reason, mend_of(fit));
@@ -189,12 +200,13 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const stu
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
-/// The protocols and questions to fit, each separately. If output files are requested, only one fit is
-/// allowed.
+/// The protocols and questions to fit, each separately. If output files or cells are requested, only one fit
+/// is allowed.
 stats::Result<std::vector<study::ChosenTask>> chosen_pilots(const FitCommand& command,
                                                             const study::TaskStudy& study) {
   const auto selection = command.choice.selection(study::TaskKind::Pilot, command.rules);
-  if (!writes_files(command)) return study::choose_tasks(study, selection);
+  const bool one_fit = writes_files(command) || command.cells.list || !command.cells.shards.empty();
+  if (!one_fit) return study::choose_tasks(study, selection);
   const auto one = study::choose_task(study, selection);
   if (!one) return stats::Refusal{one.reason()};
   return std::vector<study::ChosenTask>{*one};
@@ -202,10 +214,12 @@ stats::Result<std::vector<study::ChosenTask>> chosen_pilots(const FitCommand& co
 
 void fit_ptpe(FitCommand& command) {
   const auto history = command.out.empty() ? "" : study::history_of(command.out).string();
-  check_apart(command.database, {{"--out", command.out},
-                                 {"the record of --out", history},
-                                 {"--json", command.json},
-                                 {"--svg", command.svg}});
+  const std::map<std::string, std::string> outputs{{"--out", command.out},
+                                                   {"the record of --out", history},
+                                                   {"--json", command.json},
+                                                   {"--svg", command.svg}};
+  check_apart(command.database, outputs);
+  check_shards_kept(command.cells, outputs);
   std::optional<stats::PtpeModel> truth;
   if (!command.truth.empty()) truth = study::parse_truth(command.truth);
   if (!command.plan.empty()) command.rules = study::read_plan(command.plan).plan;
@@ -214,7 +228,8 @@ void fit_ptpe(FitCommand& command) {
   if (command.exclude) command.rules.exclusions.timing = study::timing_rule_of(*command.exclude);
   const auto study = study::read_tasks({command.database, command.incomplete});
   command.lacking = study.lacking;
-  if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
+  if (!study.lacking.empty())
+    std::fprintf(command.cells.list ? stderr : stdout, "incomplete: %s\n", study.lacking.c_str());
   const auto chosen = chosen_pilots(command, study);
   if (!chosen) {
     write_json(command, study::failed_fit_json(command.choice.level, chosen.reason()));
@@ -234,45 +249,60 @@ void fit_ptpe(FitCommand& command) {
   if (failure) throw *failure;
 }
 
+constexpr const char* solver_file =
+    "File for the solver (TOML), written on success only; every one is kept in FILE.history.jsonl";
+
+/// Adds the options of the fit and of its results, which `fit-ptpe` and `fit-ptpe merge` share. Returns
+/// --out.
+CLI::Option* add_fit_options(CLI::App& fit, FitCommand& command, const std::string& out_help) {
+  add_incomplete(fit, command.incomplete);
+  add_choice(fit, command.choice);
+  auto* out = fit.add_option("--out", command.out, out_help)->check(output_file());
+  fit.add_option("--max-width", command.max_width,
+                 "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  fit.add_flag("--force", command.force,
+               "Write the solver's file although the curve is wider or the ratings do not support it");
+  fit.add_flag("--accept-form", command.accept_form,
+               "Write the solver's file although the test of the form rejects an exponential curve");
+  fit.add_option("--json", command.json,
+                 "File for every number of the fit, written whenever the database can be read")
+      ->check(output_file());
+  fit.add_option("--svg", command.svg,
+                 "File for the heat map with contours and curve, written on success only")
+      ->check(output_file());
+  fit.add_option("--truth", command.truth,
+                 "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
+  fit.add_option("--plan", command.plan,
+                 "Analysis plan (TOML) with the rules of exclusion; without: the defaults, as for the tasks");
+  fit.add_option("--exclude", command.exclude,
+                 "Trials left out by timing verdict, instead of what the plan says (default: fail)")
+      ->check(CLI::IsMember({"none", "fail", "degraded"}));
+  add_count(fit, "--resamples", command.bootstrap.resamples, 100, 1000000,
+            "Bootstrap resamples of the participants");
+  fit.add_option("--seed", command.seed, "Seed of the resamples, instead of the plan's (default: 1)");
+  return out;
+}
+
 }  // namespace
 
 void add_fit_ptpe_command(CLI::App& app) {
   auto command = std::make_shared<FitCommand>();
   auto* fit = app.add_subcommand("fit-ptpe", "Fit mu = a exp(b delta) to the ratings of a PTPE pilot");
   add_database_argument(*fit, command->database);
-  add_incomplete(*fit, command->incomplete);
-  add_choice(*fit, command->choice);
-  fit->add_option("--out", command->out,
-                  "File for the solver (TOML), written on success only; every one is kept in "
-                  "FILE.history.jsonl")
-      ->check(output_file());
-  fit->add_option("--max-width", command->max_width,
-                  "Widest curve that the solver gets: largest half width of its 95 % band, as a share of mu")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  fit->add_flag("--force", command->force,
-                "Write the solver's file although the curve is wider or the ratings do not support it");
-  fit->add_flag("--accept-form", command->accept_form,
-                "Write the solver's file although the test of the form rejects an exponential curve");
-  fit->add_option("--json", command->json,
-                  "File for every number of the fit, written whenever the database can be read")
-      ->check(output_file());
-  fit->add_option("--svg", command->svg,
-                  "File for the heat map with contours and curve, written on success only")
-      ->check(output_file());
-  fit->add_option(
-      "--truth", command->truth,
-      "Simulated observer, as given to vip-study run: say whether the intervals hold its a and b");
-  fit->add_option(
-      "--plan", command->plan,
-      "Analysis plan (TOML) with the rules of exclusion; without: the defaults, as for the tasks");
-  fit->add_option("--exclude", command->exclude,
-                  "Trials left out by timing verdict, instead of what the plan says (default: fail)")
-      ->check(CLI::IsMember({"none", "fail", "degraded"}));
-  add_count(*fit, "--resamples", command->bootstrap.resamples, 100, 1000000,
-            "Bootstrap resamples of the participants");
-  fit->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's (default: 1)");
-  fit->callback([command] {
+  auto* out =
+      add_fit_options(*fit, *command, std::string(solver_file) + "; with --cell: file of the cell, a shard");
+  add_cells(*fit, command->cells, out, {"--json", "--svg"});
+  auto* merge = add_merge(*fit, command->cells, command->database,
+                          [&](CLI::App& merged) { add_fit_options(merged, *command, solver_file); });
+  merge->callback([command] {
+    take_database(command->cells, command->database);
+    read_shard_names(command->cells);
+    fit_ptpe(*command);
+  });
+  fit->callback([command, merge] {
+    if (merge->parsed()) return;
     check_given(command->database);
     fit_ptpe(*command);
   });

@@ -10,6 +10,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
+#include "apps/stats/cell_options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
 #include "apps/stats/power_text.hpp"
@@ -27,10 +28,9 @@ namespace {
 struct PowerCommand {
   std::string protocol, n, plan, observer, answers = "likert", earlier;
   std::optional<double> person_by_method;
-  std::string json, csv, svg, cell, out;
+  std::string json, csv, svg, out;
   ChoiceOptions choice;
-  std::vector<std::filesystem::path> shards;
-  bool list = false;
+  CellOptions cells;
   study::PowerRequest request;
   int studies = 0;
 };
@@ -136,49 +136,32 @@ void write_and_print(const PowerCommand& command, const study::StudyOutcomes& ou
   print_power(command.request, json);
 }
 
-void run_one(const PowerCommand& command) {
-  const auto cells = study::power_cells(command.request);
-  const auto found = std::find_if(cells.begin(), cells.end(),
-                                  [&](const study::PowerCell& one) { return one.key == command.cell; });
-  if (found == cells.end())
-    refuse("--cell " + command.cell, "is no cell of this calculation",
-           "copy one from --list, given with the same program and options");
-  study::run_cell(command.request, *found, command.out);
-}
-
 void check_outputs(const PowerCommand& command) {
   const std::map<std::string, std::string> outputs{
       {"--json", command.json}, {"--csv", command.csv}, {"--svg", command.svg}, {"--out", command.out}};
   check_apart("", outputs);
-  const auto check_input = [&](const std::filesystem::path& input, const char* problem) {
-    for (const auto& [option, path] : outputs) {
-      if (!path.empty() && !input.empty() &&
-          std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(input))
-        refuse(option + " " + path, problem, "give the output its own path");
-    }
-  };
-  for (const auto& shard : command.shards) check_input(shard, "is a shard that is to be joined");
-  check_input(command.earlier, "holds the results that --earlier reads");
+  check_shards_kept(command.cells, outputs);
+  check_kept(command.earlier, "holds the results that --earlier reads", outputs);
 }
 
 void run_power(PowerCommand& command, const CLI::App& options) {
   check_outputs(command);
   complete(command, options);
   const study::PowerRequest& request = command.request;
-  if (command.list) {
-    for (const auto& cell : study::power_cells(request))
-      std::printf("%s %s\n", cell.key.c_str(), study::to_text(cell).c_str());
-  } else if (!command.cell.empty()) {
-    run_one(command);
+  if (command.cells.list) {
+    print_cells(study::power_cells(request));
+  } else if (const auto& key = command.cells.cell; !key.empty()) {
+    study::run_cell(request, study::find_cell(study::power_cells(request), key), command.out);
   } else {
     write_and_print(command, study::simulate_studies(request, {0, request.studies}));
   }
 }
 
 void merge(PowerCommand& command, const CLI::App& options) {
+  read_shard_names(command.cells);
   check_outputs(command);
   complete(command, options);
-  write_and_print(command, study::join_shards(command.request, command.shards));
+  write_and_print(command, study::join_shards(command.request, command.cells.shards));
 }
 
 /// Adds the options of the calculation and of its output files, which `power` and `power merge` share.
@@ -257,21 +240,11 @@ void add_power_command(CLI::App& app) {
   auto command = std::make_shared<PowerCommand>();
   auto* sub = app.add_subcommand("power", "What n participants can tell: simulation on the protocol's plan");
   add_request_options(*sub, *command);
-  auto* list = sub->add_flag("--list", command->list, "Only print the key and the words of each cell");
-  auto* cell = sub->add_option("--cell", command->cell, "Only run the cell of this key, into --out");
   auto* out = sub->add_option("--out", command->out, "File of --cell, a shard")->check(output_file());
-  cell->needs(out)->excludes(list);
-  out->needs(cell);
-  for (const char* file : {"--json", "--csv", "--svg"}) {
-    list->excludes(file);
-    cell->excludes(file);
-  }
-  auto* merge_command = sub->add_subcommand(
-      "merge", "The whole calculation from the shards of its cells: the same as in one run");
-  add_request_options(*merge_command, *command);
-  merge_command->add_option("shards", command->shards, "Files that --cell wrote")
-      ->required()
-      ->check(CLI::ExistingFile);
+  add_cells(*sub, command->cells, out, {"--json", "--csv", "--svg"});
+  out->needs("--cell");
+  auto* merge_command =
+      add_merge(*sub, command->cells, [&](CLI::App& merge) { add_request_options(merge, *command); });
   merge_command->callback([command, merge_command] { merge(*command, *merge_command); });
   sub->callback([command, sub, merge_command] {
     if (!merge_command->parsed()) run_power(*command, *sub);

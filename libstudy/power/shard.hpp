@@ -1,9 +1,7 @@
 #pragma once
-/// A power calculation in parts that can run separately, on many cores or machines: its cells, the file of
-/// one cell, and the whole calculation from such files.
+/// The cells of a power calculation and the whole calculation from their shards (analysis/shards.hpp).
 ///
-/// JSON: "schema" is vip-power-shard/1; "key" and "cell" are the cell's key and its name in words; "studies"
-/// is studies_json(); "outcomes" is one of two lists:
+/// JSON: "schema" is vip-power-shard/1; "studies" is studies_json(); "outcomes" is one of two lists:
 /// - Task 1 and 2: for each hypothesis of each world [[supported, any, any_false, paper], tests], the counts
 ///   of HypothesisCount (studies.hpp). A test has the counts of TestCount (studies.hpp): [holds, uncorrected,
 ///   against, refused, estimates, estimate_units, participants_least, participants_most];
@@ -16,19 +14,16 @@
 #include <variant>
 #include <vector>
 
+#include "libstudy/analysis/shards.hpp"
 #include "libstudy/power/power_json.hpp"
 
 namespace study {
 
 /// A part of a power calculation: consecutive simulated studies with one number of participants.
-struct PowerCell {
-  std::string key;  ///< 16 hexadecimal digits: a hash of everything that the cell's outcome depends on
+struct PowerCell : ListedCell {
   int n = 0;
   StudyRange studies;
 };
-
-/// The cell in words: "26 participants, studies 1 to 192".
-std::string to_text(const PowerCell& cell);
 
 /// All cells of a request, sorted by n and study. A cell simulates at most 100,000 participants in at most
 /// 10,000 studies; at most 5,000 participants if the plan uses the mixed model, which is slower.

@@ -13,12 +13,9 @@ namespace {
 /// The group of each person. Equal seeds give equal groups on every machine: std::mt19937_64 and the shuffle
 /// below are exact.
 std::vector<int> groups_of(int people, const RivalComparisonOptions& options) {
-  if (options.folds == 1 || options.folds < 0 || options.folds > people)
-    throw std::invalid_argument("compare_rivals: " + std::to_string(options.folds) +
-                                " folds; give 0, or 2 to the number of people");
+  const int folds = rival_group_count(people, options);
   std::vector<int> order(static_cast<std::size_t>(people)), out(order.size());
   std::iota(order.begin(), order.end(), 0);
-  const int folds = options.folds == 0 ? people : options.folds;
   std::mt19937_64 engine(options.seed);
   for (std::size_t i = order.size(); options.folds > 0 && i > 1; --i)
     std::swap(order[i - 1], order[engine() % i]);
@@ -27,19 +24,21 @@ std::vector<int> groups_of(int people, const RivalComparisonOptions& options) {
   return out;
 }
 
-/// Scores of the people of one group by the fit without them; the reason if there is no such fit.
-std::string score_group(const RivalFitter& fitter, const RivalAnswers& answers,
-                        const std::vector<int>& groups, int group, RivalScore& out) {
+/// The fit without the people of one group.
+Result<RivalFit> fit_without(const RivalFitter& fitter, const std::vector<int>& groups, int group) {
   std::vector<char> in;
   for (const int g : groups) in.push_back(g != group);
-  const auto fit = fitter.fit_some(in);
-  if (!fit) return fit.reason();
+  return fitter.fit_some(in);
+}
+
+/// Scores of the people of one group by the fit without them.
+void score_group(const RivalFitter& fitter, const RivalAnswers& answers, const std::vector<int>& groups,
+                 int group, const RivalFit& fit, RivalScore& out) {
   for (std::size_t p = 0; p < groups.size(); ++p)
-    if (!in[p]) out.by_person[p] = fitter.log_score(*fit, static_cast<int>(p));
+    if (groups[p] == group) out.by_person[p] = fitter.log_score(fit, static_cast<int>(p));
   for (std::size_t i = 0; i < answers.n(); ++i)
-    if (!in[static_cast<std::size_t>(answers.person[i])])
-      out.probabilities[i] = fitter.probabilities(*fit, i);
-  return "";
+    if (groups[static_cast<std::size_t>(answers.person[i])] == group)
+      out.probabilities[i] = fitter.probabilities(fit, i);
 }
 
 /// The values minus their mean, divided by their SD; empty if they do not vary.
@@ -103,13 +102,37 @@ RivalLead rival_lead(std::span<const double> a, std::span<const double> b) {
   return {sum, std::sqrt(n * squares / (n - 1))};
 }
 
+int rival_group_count(int people, const RivalComparisonOptions& options) {
+  if (options.folds == 1 || options.folds < 0 || options.folds > people)
+    throw std::invalid_argument("compare_rivals: " + std::to_string(options.folds) +
+                                " folds; give 0, or 2 to the number of people");
+  return options.folds == 0 ? people : options.folds;
+}
+
+std::vector<Result<RivalFit>> fit_without_groups(const RivalModel& model, const RivalAnswers& answers,
+                                                 const RivalComparisonOptions& options, RivalGroups groups) {
+  const auto of = groups_of(answers.people, options);
+  RivalFitter fitter(model, answers, options.fit);
+  const auto whole = fitter.fit();
+  std::vector<Result<RivalFit>> out(static_cast<std::size_t>(groups.count), Refusal{whole.reason()});
+  if (!whole) return out;
+#pragma omp parallel for schedule(dynamic)
+  for (int g = 0; g < groups.count; ++g)
+    out[static_cast<std::size_t>(g)] = fit_without(fitter, of, groups.first + g);
+  return out;
+}
+
 Result<RivalComparison> compare_rivals(const std::vector<RivalModel>& models, const RivalAnswers& answers,
-                                       int reference, const RivalComparisonOptions& options) {
+                                       int reference, const RivalComparisonOptions& options,
+                                       const std::vector<std::vector<Result<RivalFit>>>* without) {
   if (answers.people < least_people_to_compare)
     return Refusal{"models are compared over at least " + std::to_string(least_people_to_compare) +
                    " people, not " + std::to_string(answers.people)};
   const auto groups = groups_of(answers.people, options);
-  const int folds = options.folds == 0 ? answers.people : options.folds;
+  const int folds = rival_group_count(answers.people, options);
+  const auto complete = [&](const auto& fits) { return fits.size() == static_cast<std::size_t>(folds); };
+  if (without && (without->size() != models.size() || !std::ranges::all_of(*without, complete)))
+    throw std::invalid_argument("compare_rivals: give a fit for each model and group, or none");
   RivalComparison out;
   out.people = answers.people;
   out.answers = answers.n();
@@ -128,10 +151,11 @@ Result<RivalComparison> compare_rivals(const std::vector<RivalModel>& models, co
   std::vector<std::string> reasons(static_cast<std::size_t>(count * folds));
 #pragma omp parallel for schedule(dynamic)
   for (int task = 0; task < count * folds; ++task) {
-    const auto m = static_cast<std::size_t>(task / folds);
-    if (out.models[m].fit)
-      reasons[static_cast<std::size_t>(task)] =
-          score_group(fitters[m], answers, groups, task % folds, out.models[m]);
+    const auto m = static_cast<std::size_t>(task / folds), g = static_cast<std::size_t>(task % folds);
+    if (!out.models[m].fit) continue;
+    const auto fit = without ? (*without)[m][g] : fit_without(fitters[m], groups, task % folds);
+    reasons[static_cast<std::size_t>(task)] = fit.reason();
+    if (fit) score_group(fitters[m], answers, groups, task % folds, *fit, out.models[m]);
   }
   std::vector<std::vector<double>> scores;
   std::vector<int> rivals;

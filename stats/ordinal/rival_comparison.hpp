@@ -61,12 +61,26 @@ struct RivalComparison {
   std::size_t answers = 0;
 };
 
+/// Consecutive groups of people: those with the numbers first to first + count - 1.
+struct RivalGroups {
+  int first = 0, count = 0;
+};
+/// Number of groups of people that are left out in turn. std::invalid_argument for one fold or more folds
+/// than people.
+int rival_group_count(int people, const RivalComparisonOptions& options);
+/// Fits of one model, each without the people of one of the groups. All are refused if the fit to all answers
+/// is. std::invalid_argument as compare_rivals().
+std::vector<Result<RivalFit>> fit_without_groups(const RivalModel& model, const RivalAnswers& answers,
+                                                 const RivalComparisonOptions& options, RivalGroups groups);
+
 /// Fits and scores all models. `reference`: index of the model with a free value for each setting, which is
 /// compared but cannot win; -1: none. Refused: fewer than least_people_to_compare people, or fewer than two
 /// models (the reference left out) that can be fitted. std::invalid_argument as RivalFitter, and for one fold
-/// or more folds than people.
+/// or more folds than people. `without`: for each model the fits without each group, if fit_without_groups()
+/// has computed them (std::invalid_argument for another number); none: they are computed here.
 Result<RivalComparison> compare_rivals(const std::vector<RivalModel>& models, const RivalAnswers& answers,
-                                       int reference, const RivalComparisonOptions& options);
+                                       int reference, const RivalComparisonOptions& options,
+                                       const std::vector<std::vector<Result<RivalFit>>>* without = nullptr);
 
 /// Weights w >= 0 with sum 1 that maximise sum over people of log(sum over models of w exp(score)) (stacking
 /// of predictive distributions; Yao and others 2018, Bayesian Anal. 13, 917-1007). scores[model][person].

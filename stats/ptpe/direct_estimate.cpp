@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -68,19 +69,29 @@ Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>
   return test;
 }
 
-Result<PilotSpread> bootstrap(const DirectModel& model, const DirectFit& fit,
-                              const BootstrapOptions& options) {
-  const int n = model.participants();
-  if (options.resamples < 1) return Refusal{"no resamples were asked for"};
-  std::vector<double> a, b;
-  for (int i = 0; i < options.resamples; ++i) {
-    const auto drawn = model.fit(resample_weights(n, options.seed, static_cast<std::uint64_t>(i)), &fit);
+ResampledCurves resampled_fits(const DirectModel& model, const DirectFit& fit,
+                               const BootstrapOptions& options, ResampleRange range) {
+  ResampledCurves out;
+  for (int i = range.first; i < range.first + range.count; ++i) {
+    const auto weights = resample_weights(model.participants(), options.seed, static_cast<std::uint64_t>(i));
+    const auto drawn = model.fit(weights, &fit);
+    out.emplace_back();
+    if (drawn) out.back() = std::array{drawn->curve.a(), drawn->curve.b};
     if (options.progress) options.progress(i + 1);
-    if (!drawn) continue;
-    a.push_back(drawn->curve.a());
-    b.push_back(drawn->curve.b);
   }
-  return pilot_spread(a, b, n, options);
+  return out;
+}
+
+Result<PilotSpread> bootstrap(const DirectModel& model, const DirectFit& fit, const BootstrapOptions& options,
+                              const ResampledCurves* drawn) {
+  if (options.resamples < 1) return Refusal{"no resamples were asked for"};
+  const int n = model.participants();
+  if (!drawn)
+    return pilot_spread(resampled_fits(model, fit, options, {0, options.resamples}), n, options.confidence);
+  if (static_cast<int>(drawn->size()) != options.resamples)
+    throw std::invalid_argument("estimate_direct: " + std::to_string(drawn->size()) + " curves for " +
+                                std::to_string(options.resamples) + " resamples; give one for each");
+  return pilot_spread(*drawn, n, options.confidence);
 }
 
 void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
@@ -149,8 +160,16 @@ std::vector<double> DirectEstimate::in_reach_of(std::span<const double> deltas) 
   return kept;
 }
 
+ResampledCurves resample_direct(std::span<const PilotObservation> observations, double level,
+                                const BootstrapOptions& options, ResampleRange range) {
+  const DirectModel model(within_reach(observations, level).kept, level);
+  if (model.participants() == 0) return {};
+  const auto fit = model.fit();
+  return fit ? resampled_fits(model, *fit, options, range) : ResampledCurves();
+}
+
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
-                               const BootstrapOptions& options) {
+                               const BootstrapOptions& options, const ResampledCurves* drawn) {
   DirectEstimate out;
   const Reach reach = within_reach(observations, level);
   out.out_of_reach = reach.left_out;
@@ -173,7 +192,7 @@ DirectEstimate estimate_direct(std::span<const PilotObservation> observations, d
       out.jackknife = spread_of(*out.fit, *without, options.confidence);
       out.lack_of_fit = lack_of_fit(*out.fit, *without);
       out.form = form_test(reach.kept, out.fit->curve, level, options.confidence);
-      out.bootstrap = bootstrap(model, *out.fit, options);
+      out.bootstrap = bootstrap(model, *out.fit, options, drawn);
     } else {
       refuse_spread(out, without.reason());
     }

@@ -138,8 +138,15 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
 /// Fits the settings that within_reach() keeps, with a jackknife-t and an expanded percentile bootstrap over
 /// whole participants (options.resamples = 0: no bootstrap). The intervals and tests are refused with fewer
 /// than least_participants and if there is no fit without one of the participants; the bootstrap also if more
-/// than largest_failed_share of the resamples have no fit.
+/// than largest_failed_share of the resamples have no fit. `drawn`: the curves of all options.resamples
+/// resamples, if resample_direct() has computed them (std::invalid_argument for another number); none: they
+/// are computed here.
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
-                               const BootstrapOptions& options);
+                               const BootstrapOptions& options, const ResampledCurves* drawn = nullptr);
+
+/// The curves of some of the resamples of estimate_direct(). options.resamples is not used. Empty if there is
+/// no fit.
+ResampledCurves resample_direct(std::span<const PilotObservation> observations, double level,
+                                const BootstrapOptions& options, ResampleRange range);
 
 }  // namespace stats

@@ -135,55 +135,73 @@ Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level) {
   return fit_contour(column_crossings(grid, level, contour_lines(grid)).points);
 }
 
-Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
-                                 const BootstrapOptions& options) {
-  const int n = participants;
-  const int failed = options.resamples - static_cast<int>(a.size());
-  if (a.size() < 2 || failed > largest_failed_share * options.resamples) {
-    return Refusal{std::to_string(failed) + " of " + std::to_string(options.resamples) +
+Result<PilotSpread> pilot_spread(const ResampledCurves& curves, int participants, double confidence) {
+  const int n = participants, resamples = static_cast<int>(curves.size());
+  std::vector<double> a, b;
+  for (const auto& curve : curves) {
+    if (!curve) continue;
+    a.push_back((*curve)[0]);
+    b.push_back((*curve)[1]);
+  }
+  const int failed = resamples - static_cast<int>(a.size());
+  if (a.size() < 2 || failed > largest_failed_share * resamples) {
+    return Refusal{std::to_string(failed) + " of " + std::to_string(resamples) +
                    " resamples of the participants have no fit"};
   }
-  const bool extremes = expanded_tail(n, options.confidence) * static_cast<double>(a.size()) < 1;
-  return PilotSpread{.a_ci = expanded_percentile_interval(a, n, options.confidence),
-                     .b_ci = expanded_percentile_interval(b, n, options.confidence),
+  const bool extremes = expanded_tail(n, confidence) * static_cast<double>(a.size()) < 1;
+  return PilotSpread{.a_ci = expanded_percentile_interval(a, n, confidence),
+                     .b_ci = expanded_percentile_interval(b, n, confidence),
                      .a_se = bootstrap_se(a),
                      .b_se = bootstrap_se(b),
-                     .resamples = options.resamples,
+                     .resamples = resamples,
                      .failed = failed,
                      .extremes = extremes};
 }
 
 namespace {
 
-Result<PilotSpread> spread_over_participants(const PilotTable& table, PilotMean mean, double level,
-                                             const BootstrapOptions& options) {
-  const int n = table.participants();
-  if (n < least_participants) {
-    return Refusal{"an interval over participants needs at least " + std::to_string(least_participants) +
-                   " of them, not " + std::to_string(n)};
-  }
-  std::vector<double> a, b;
-  for (int i = 0; i < options.resamples; ++i) {
-    const auto weights = resample_weights(n, options.seed, static_cast<std::uint64_t>(i));
+ResampledCurves resampled_contours(const PilotTable& table, PilotMean mean, double level,
+                                   const BootstrapOptions& options, ResampleRange range) {
+  ResampledCurves out;
+  for (int i = range.first; i < range.first + range.count; ++i) {
+    const auto weights = resample_weights(table.participants(), options.seed, static_cast<std::uint64_t>(i));
     const auto fit = estimate_contour(table.grid(mean, weights), level);
+    out.emplace_back();
+    if (fit) out.back() = std::array{fit->a, fit->b};
     if (options.progress) options.progress(i + 1);
-    if (!fit) continue;
-    a.push_back(fit->a);
-    b.push_back(fit->b);
   }
-  return pilot_spread(a, b, n, options);
+  return out;
 }
 
 }  // namespace
 
+ResampledCurves resample_pilot(const PilotTable& table, PilotMean mean, double level,
+                               const BootstrapOptions& options, ResampleRange range) {
+  if (table.participants() < least_participants || !estimate_contour(table.grid(mean), level)) return {};
+  return resampled_contours(table, mean, level, options, range);
+}
+
 PilotEstimate estimate_pilot(const PilotTable& table, PilotMean mean, double level,
-                             const BootstrapOptions& options) {
+                             const BootstrapOptions& options, const ResampledCurves* drawn) {
+  const int n = table.participants();
   const auto grid = table.grid(mean);
   PilotEstimate estimate;
   estimate.contour = column_crossings(grid, level, contour_lines(grid));
   estimate.fit = fit_contour(estimate.contour.points);
-  estimate.spread = estimate.fit ? spread_over_participants(table, mean, level, options)
-                                 : Result<PilotSpread>(Refusal{estimate.fit.reason()});
+  if (!estimate.fit) {
+    estimate.spread = Refusal{estimate.fit.reason()};
+  } else if (n < least_participants) {
+    estimate.spread = Refusal{"an interval over participants needs at least " +
+                              std::to_string(least_participants) + " of them, not " + std::to_string(n)};
+  } else if (!drawn) {
+    const auto curves = resampled_contours(table, mean, level, options, {0, options.resamples});
+    estimate.spread = pilot_spread(curves, n, options.confidence);
+  } else if (static_cast<int>(drawn->size()) == options.resamples) {
+    estimate.spread = pilot_spread(*drawn, n, options.confidence);
+  } else {
+    throw std::invalid_argument("estimate_pilot: " + std::to_string(drawn->size()) + " curves for " +
+                                std::to_string(options.resamples) + " resamples; give one for each");
+  }
   return estimate;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -91,11 +92,16 @@ inline constexpr int least_participants = 4;
 /// selection, so no interval is given.
 inline constexpr double largest_failed_share = 0.05;
 
-/// Summarises the resampled estimates of a and b. Resamples without a fit are missing from `a` and `b`;
-/// refused if they are more than largest_failed_share of options.resamples, or if fewer than two resamples
-/// have a fit.
-Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
-                                 const BootstrapOptions& options);
+/// Consecutive resamples: those with the numbers first to first + count - 1.
+struct ResampleRange {
+  int first = 0, count = 0;
+};
+/// a and b of the curve of each resample, in the order of the resamples; empty where a resample has no fit.
+using ResampledCurves = std::vector<std::optional<std::array<double, 2>>>;
+
+/// Summarises resampled curves. Refused if those without a fit are more than largest_failed_share of all, or
+/// if fewer than two resamples have a fit.
+Result<PilotSpread> pilot_spread(const ResampledCurves& curves, int participants, double confidence);
 
 /// A contour of the mean scores, the curve a exp(b delta) fitted to it, and the curve's uncertainty over
 /// participants.
@@ -108,8 +114,15 @@ struct PilotEstimate {
 /// Resamples whole participants and computes the contour and its curve anew each time. The fit's own standard
 /// errors do not reflect differences between participants: the contour's points are interpolated from few
 /// means and far from independent. `spread` is refused without a fit, with fewer than least_participants, and
-/// if more than largest_failed_share of the resamples have no fit.
+/// if more than largest_failed_share of the resamples have no fit. `drawn`: the curves of all
+/// options.resamples resamples, if resample_pilot() has computed them (std::invalid_argument for another
+/// number); none: they are computed here.
 PilotEstimate estimate_pilot(const PilotTable& table, PilotMean mean, double level,
-                             const BootstrapOptions& options);
+                             const BootstrapOptions& options, const ResampledCurves* drawn = nullptr);
+
+/// The curves of some of the resamples of estimate_pilot(). options.resamples is not used. Empty if
+/// estimate_pilot() gives no intervals, for lack of a fit or of participants.
+ResampledCurves resample_pilot(const PilotTable& table, PilotMean mean, double level,
+                               const BootstrapOptions& options, ResampleRange range);
 
 }  // namespace stats

@@ -53,14 +53,14 @@ TEST(PowerCells, MakeUpTheCalculation) {
     request.plan.plan.tests = tests;
     std::map<int, int> next;  // next study by n
     for (const auto& cell : study::power_cells(request)) {
-      EXPECT_EQ(cell.studies.first, next[cell.n]) << study::to_text(cell);
+      EXPECT_EQ(cell.studies.first, next[cell.n]) << cell.words;
       EXPECT_GT(cell.studies.count, 0);
       next[cell.n] += cell.studies.count;
     }
     EXPECT_EQ(next, (std::map<int, int>{{2, 2000}, {26, 2000}, {2000, 2000}}));
     EXPECT_EQ(keys_of(request).size(), study::power_cells(request).size());
   }
-  EXPECT_EQ(study::to_text(study::power_cells(by_model())[1]), "24 participants, studies 209 to 220");
+  EXPECT_EQ(study::power_cells(by_model())[1].words, "24 participants, studies 209 to 220");
 }
 
 TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
@@ -116,6 +116,7 @@ TEST_F(PowerShards, KeepIntervalsWithoutEnd) {
   const auto shards = run_apart(request);
   study::Json shard = study::Json::parse(bytes_of(shards[0]));
   shard["outcomes"][0] = study::Json::parse(R"([true, true, 24.5, "Inf", "-Inf", "Inf", 0.02, null, 0, 1])");
+  shard["outcomes_sha256"] = base::sha256_hex(shard["outcomes"].dump());
   base::write_file_atomically(shards[0], shard.dump());
   const auto joined = std::get<study::PilotOutcomes>(study::join_shards(request, shards));
   const auto& read = joined[1][0];  // the last cell's shard is the first file
@@ -182,8 +183,14 @@ TEST_F(PowerShards, WhatIsNoneIsRefusedAndLeftAsItIs) {
   study::Json& figures = fewer["outcomes"][0][1];
   figures = std::vector<study::Json>(figures.begin() + 1, figures.end());
   refused(fewer.dump(), "damaged or cut short");
+  fewer["outcomes_sha256"] = base::sha256_hex(fewer["outcomes"].dump());
+  refused(fewer.dump(), "damaged or cut short");
   fewer = study::Json::parse(sound);
   fewer["outcomes"][0][0][0] = "many";
+  fewer["outcomes_sha256"] = base::sha256_hex(fewer["outcomes"].dump());
+  refused(fewer.dump(), "damaged or cut short");
+  fewer = study::Json::parse(sound);
+  fewer["outcomes"][0][0][0] = fewer["outcomes"][0][0][0].get<int>() + 1;
   refused(fewer.dump(), "damaged or cut short");
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "libstudy/analysis/ptpe/pilot_people_json.hpp"
 #include "stats/base/file.hpp"
@@ -199,17 +200,42 @@ Categories categories_of(const TaskData& data, const stats::PilotPeople& people,
   return out;
 }
 
+/// `drawn`: two resampled curves, of the direct and the contour estimate; none: they are computed here.
 LevelFit fit_level(const Categories& categories, const stats::PilotTable& table, PilotMean mean, double level,
-                   const stats::BootstrapOptions& options) {
+                   const stats::BootstrapOptions& options, const stats::ResampledCurves* drawn) {
   LevelFit fit;
-  fit.direct = stats::estimate_direct(table.observations(mean), level, options);
-  fit.contour = stats::estimate_pilot(table, mean, level, options);
+  fit.direct = stats::estimate_direct(table.observations(mean), level, options, drawn);
+  fit.contour = stats::estimate_pilot(table, mean, level, options, drawn ? drawn + 1 : nullptr);
   if (mean == PilotMean::Arithmetic) return fit;
   fit.ordinal = stats::estimate_ordinal_pilot(categories.ratings, mean, categories.with_lapses(level),
                                               options.confidence);
   fit.band = stats::scale_end_curve(table.observations(mean), fit.direct, level, categories.ends);
   return fit;
 }
+
+std::set<double> fitted_levels(const TaskData& data, double level) {
+  std::set<double> levels{level};
+  if (on_papers_scale(data.question)) levels.insert({4.0, 5.0});
+  return levels;
+}
+
+/// Shows how many resamples are done.
+class Resampling {
+ public:
+  Resampling(std::size_t levels, int resamples, const stats::BootstrapOptions& bootstrap)
+      : progress_("resampling participants", 4 * levels * static_cast<std::size_t>(resamples)),
+        options_(bootstrap) {
+    options_.progress = [this](int) { progress_.update(++done_); };
+  }
+  Resampling(const Resampling&) = delete;
+  Resampling& operator=(const Resampling&) = delete;
+  const stats::BootstrapOptions& options() const { return options_; }
+
+ private:
+  base::Progress progress_;
+  std::size_t done_ = 0;
+  stats::BootstrapOptions options_;
+};
 
 }  // namespace
 
@@ -230,8 +256,24 @@ double PilotFit::relative_half_width() const {
   return direct.jackknife->largest_relative_half_width(direct.in_reach_of(deltas));
 }
 
+FitResamples resample_fit(const TaskData& data, double level, const stats::BootstrapOptions& bootstrap,
+                          const stats::PilotRules& rules, stats::ResampleRange range) {
+  const auto people = stats::pilot_people(data.ratings, bootstrap.confidence);
+  const stats::PilotTable table(stats::apply_rules(data.ratings, people, rules));
+  const auto levels = fitted_levels(data, level);
+  const Resampling resampling(levels.size(), range.count, bootstrap);
+  FitResamples out;
+  for (const double at : levels) {
+    for (const auto mean : {PilotMean::Harmonic, PilotMean::Arithmetic}) {
+      out.push_back(stats::resample_direct(table.observations(mean), at, resampling.options(), range));
+      out.push_back(stats::resample_pilot(table, mean, at, resampling.options(), range));
+    }
+  }
+  return out;
+}
+
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
-                   const stats::PilotRules& rules) {
+                   const stats::PilotRules& rules, const FitResamples* drawn) {
   PilotFit fit;
   fit.rules = rules;
   fit.people = stats::pilot_people(data.ratings, bootstrap.confidence);
@@ -245,16 +287,19 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   fit.grid = table.grid(PilotMean::Harmonic);
   for (std::size_t cell = 0; cell < fit.grid.nodes.size(); ++cell) fit.scores.push_back(table.scores(cell));
   fit.deltas = fit.grid.delta;
-  std::set<double> levels{level};
-  if (on_papers_scale(data.question)) levels.insert({4.0, 5.0});
-  base::Progress progress("resampling participants",
-                          4 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
-  std::size_t done = 0;
-  auto options = bootstrap;
-  options.progress = [&](int) { progress.update(++done); };
+  const auto levels = fitted_levels(data, level);
+  const Resampling resampling(levels.size(), bootstrap.resamples, bootstrap);
+  if (drawn && drawn->size() != 4 * levels.size())
+    throw std::invalid_argument("fit_pilot: give the resamples of resample_fit() with the same arguments");
+  const auto* next = drawn ? drawn->data() : nullptr;
+  const auto fitted = [&](PilotMean mean, double at) {
+    const auto* curves = next;
+    if (next) next += 2;
+    return fit_level(categories, table, mean, at, resampling.options(), curves);
+  };
   for (const double at : levels) {
-    fit.harmonic[at] = fit_level(categories, table, PilotMean::Harmonic, at, options);
-    fit.arithmetic[at] = fit_level(categories, table, PilotMean::Arithmetic, at, options);
+    fit.harmonic[at] = fitted(PilotMean::Harmonic, at);
+    fit.arithmetic[at] = fitted(PilotMean::Arithmetic, at);
   }
   fit.reason = unusable(fit, data, table);
   if (!fit.ok()) {

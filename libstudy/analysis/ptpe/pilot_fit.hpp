@@ -87,10 +87,21 @@ struct PilotFit {
   double relative_half_width() const;
 };
 
+/// The resampled curves of each bootstrap of a fit: for each level that is fitted, in ascending order, for
+/// the harmonic and then the arithmetic mean, those of the direct and then of the contour estimate. The
+/// curves of an estimate without a fit are empty.
+using FitResamples = std::vector<stats::ResampledCurves>;
+
+/// Some of the resamples of fit_pilot() with the same arguments. bootstrap.resamples is not used. Each
+/// resample depends on its number and on the seed only, so that parts of the resamples make up the whole.
+FitResamples resample_fit(const TaskData& data, double level, const stats::BootstrapOptions& bootstrap,
+                          const stats::PilotRules& rules, stats::ResampleRange range);
+
 /// Fits the pilot at the score `level`, which must be finite. A level outside the rating scale gives a fit
-/// with ok() = false.
+/// with ok() = false. `drawn`: all resamples, if resample_fit() has computed them; none: they are computed
+/// here.
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
-                   const stats::PilotRules& rules = {});
+                   const stats::PilotRules& rules = {}, const FitResamples* drawn = nullptr);
 
 /// The content of fit.json if the database has no data to fit. It holds the reason.
 base::Json failed_fit_json(std::optional<double> level, const std::string& reason);

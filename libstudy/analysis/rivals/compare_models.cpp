@@ -16,27 +16,6 @@ namespace {
 
 constexpr const char* nothing_model = "nothing";  ///< the model without a predictor
 
-/// The rivals, then the model of nothing, then the free model if it is fitted.
-std::vector<stats::RivalModel> rival_models(const RivalData& data, const std::vector<TimingModel>& models) {
-  std::vector<stats::RivalModel> out;
-  for (const TimingModel& model : models) {
-    stats::RivalModel& one = out.emplace_back(stats::RivalModel{model.name, {}, false});
-    for (std::size_t j = 0; j < model.predictors.size(); ++j) {
-      one.predictors.push_back({predictor_name(model.predictors[j]), {}});
-      for (const auto& timing : data.timing) one.predictors.back().values.push_back(model.value(timing, j));
-    }
-  }
-  out.push_back({nothing_model, {}, true});
-  if (data.settings.size() > most_free_settings) return out;
-  stats::RivalModel free{free_model, {}, true};
-  for (std::size_t s = 1; s < data.settings.size(); ++s) {
-    free.predictors.push_back({setting_name(data.settings[s]), {}});
-    for (const int at : data.setting) free.predictors.back().values.push_back(at == static_cast<int>(s));
-  }
-  out.push_back(std::move(free));
-  return out;
-}
-
 int reference_of(const std::vector<stats::RivalModel>& models) {
   return models.back().name == free_model ? static_cast<int>(models.size()) - 1 : -1;
 }
@@ -332,11 +311,32 @@ class Document {
 
 }  // namespace
 
+std::vector<stats::RivalModel> rival_models(const RivalData& data, const std::vector<TimingModel>& models) {
+  std::vector<stats::RivalModel> out;
+  for (const TimingModel& model : models) {
+    stats::RivalModel& one = out.emplace_back(stats::RivalModel{model.name, {}, false});
+    for (std::size_t j = 0; j < model.predictors.size(); ++j) {
+      one.predictors.push_back({predictor_name(model.predictors[j]), {}});
+      for (const auto& timing : data.timing) one.predictors.back().values.push_back(model.value(timing, j));
+    }
+  }
+  out.push_back({nothing_model, {}, true});
+  if (data.settings.size() > most_free_settings) return out;
+  stats::RivalModel free{free_model, {}, true};
+  for (std::size_t s = 1; s < data.settings.size(); ++s) {
+    free.predictors.push_back({setting_name(data.settings[s]), {}});
+    for (const int at : data.setting) free.predictors.back().values.push_back(at == static_cast<int>(s));
+  }
+  out.push_back(std::move(free));
+  return out;
+}
+
 stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& data,
                                                             const std::vector<TimingModel>& models,
-                                                            const stats::RivalComparisonOptions& options) {
+                                                            const stats::RivalComparisonOptions& options,
+                                                            const RivalFits* without) {
   const auto rivals = rival_models(data, models);
-  return stats::compare_rivals(rivals, data.answers, reference_of(rivals), options);
+  return stats::compare_rivals(rivals, data.answers, reference_of(rivals), options, without);
 }
 
 std::string why_exploratory(const RivalData& data, const std::vector<TimingModel>& models,

@@ -17,12 +17,20 @@ inline constexpr std::size_t most_free_settings = 60;
 inline constexpr const char* free_model = "free";  ///< name of this model
 inline constexpr const char* no_declared_comparison = "no analysis plan declares a comparison of models";
 
+/// The models as they are fitted: those given, then the model of nothing, then free_model if there are at
+/// most most_free_settings timings.
+std::vector<stats::RivalModel> rival_models(const RivalData& data, const std::vector<TimingModel>& models);
+
+/// For each of rival_models() the fits without each group of people.
+using RivalFits = std::vector<std::vector<stats::Result<stats::RivalFit>>>;
+
 /// Fits and compares the models. The last model of the comparison is free_model, if there are at most
-/// most_free_settings timings. why_no_comparison() must be empty for the data. Refused as
-/// stats::compare_rivals().
+/// most_free_settings timings. why_no_comparison() must be empty for the data. `without`: the fits without
+/// each group, if stats::fit_without_groups() has computed them. Refused as stats::compare_rivals().
 stats::Result<stats::RivalComparison> compare_timing_models(const RivalData& data,
                                                             const std::vector<TimingModel>& models,
-                                                            const stats::RivalComparisonOptions& options);
+                                                            const stats::RivalComparisonOptions& options,
+                                                            const RivalFits* without = nullptr);
 
 /// Why the comparison is not confirmatory, in words: the plan does not declare it, or nothing shows that the
 /// plan is older than the first answer. Empty: it is confirmatory. plan_rules: exclusions and seed are those
