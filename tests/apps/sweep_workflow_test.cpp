@@ -6,7 +6,10 @@
 
 #include <chrono>
 #include <fstream>
+#include <sstream>
 
+#include "tests/apps/pilot_database.hpp"
+#include "tests/apps/rival_study.hpp"
 #include "tests/apps/table_test_support.hpp"
 
 namespace apps {
@@ -112,13 +115,54 @@ class SweepWorkflowE2e : public test::TableTest {
     for (const auto& entry : fs::directory_iterator(done)) {
       const std::string job = entry.path().filename();
       const fs::path shard =
-          folder / ("out/" + kind + "/shards/" + job.substr(0, 16) + (kind == "power" ? ".json" : ".db"));
+          folder / ("out/" + kind + "/shards/" + job.substr(0, 16) + (kind == "accuracy" ? ".db" : ".json"));
       out[shard] = written(shard);
     }
     return out;
   }
   static void expect_kept(const std::map<fs::path, Written>& before) {
     for (const auto& [shard, then] : before) EXPECT_EQ(written(shard), then) << shard << " was run again";
+  }
+
+  /// Runs `command` of vip-stats at once and as a workflow. Of the workflow, first Snakemake and its workers
+  /// are killed half-way, and then one worker. Expects equal results, but for the time of writing.
+  void expect_serial_result(const std::string& command, const std::string& kind, const std::string& options,
+                            std::size_t cells, const std::vector<std::string>& endings) const {
+    std::string files;
+    for (const auto& ending : endings) files += " --" + ending + " " + path("serial." + ending);
+    const auto serial =
+        test::run_shell(environment() + VIP_BIN_DIR "/vip-stats " + command + " " + options + files);
+    ASSERT_EQ(serial.exit_code, 0) << serial.out;
+
+    const std::string arguments = "--config " + kind + "='" + options + "'";
+    const auto in_cell = [](const Worker& worker) { return !fs::exists(worker.shard); };
+    auto whole = workflow(arguments);
+    stop_a_worker(kind, 2, in_cell);
+    ::kill(-whole.pid(), SIGKILL);
+    EXPECT_EQ(whole.wait().signal, SIGKILL);
+    for (const Worker& left : workers()) ::kill(left.pid, SIGKILL);
+    const auto kept = done_shards(kind);
+    EXPECT_GE(kept.size(), 2u);
+    EXPECT_LT(kept.size(), cells);
+
+    ASSERT_EQ(workflow("--unlock " + arguments).wait().exit_code, 0) << log();
+    auto again = workflow("--rerun-incomplete " + arguments);
+    const Worker worker = stop_a_worker(kind, kept.size() + 1, in_cell);
+    ::kill(worker.pid, SIGKILL);
+    ASSERT_EQ(again.wait().exit_code, 0) << log();
+    EXPECT_THAT(log(), ::testing::HasSubstr("Trying to restart job"));
+    expect_kept(kept);
+    EXPECT_EQ(done_shards(kind).size(), cells);
+    for (const auto& ending : endings)
+      EXPECT_EQ(undated("out/" + kind + "/" + kind + "." + ending), undated("serial." + ending));
+  }
+  /// The lines of a file without the time of writing.
+  std::string undated(const std::string& name) const {
+    std::istringstream lines(base::read_file(path(name), 1 << 24));
+    std::string out;
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("\"date_utc\"") == std::string::npos) out += line + "\n";
+    return out;
   }
 
   const std::string root_ = fs::path(VIP_TEST_DIR).parent_path();
@@ -148,7 +192,16 @@ TEST_F(SweepWorkflowE2e, AWorkerThatIsKilledHalfWayLeavesTheSerialRunsTable) {
   EXPECT_FALSE(kept.contains(worker.shard));
   EXPECT_FALSE(fs::exists(path("out/accuracy/settings.csv")));
 
-  ASSERT_EQ(workflow(arguments).wait().exit_code, 0) << log();
+  // Snakemake alone is killed; a cell that runs then may end.
+  auto alone = workflow(arguments);
+  stop_a_worker("accuracy", kept.size() + 2, [](const Worker&) { return true; });
+  ::kill(alone.pid(), SIGKILL);
+  EXPECT_EQ(alone.wait().signal, SIGKILL);
+  for (const Worker& left : workers()) ::kill(left.pid, SIGCONT);
+  EXPECT_LT(done_shards("accuracy").size(), 13u);
+
+  ASSERT_EQ(workflow("--unlock " + arguments).wait().exit_code, 0) << log();
+  ASSERT_EQ(workflow("--rerun-incomplete " + arguments).wait().exit_code, 0) << log();
   expect_kept(kept);
   const auto rows = timeless("serial.csv");
   EXPECT_EQ(rows.size(), 11u);
@@ -159,34 +212,22 @@ TEST_F(SweepWorkflowE2e, AWorkerThatIsKilledHalfWayLeavesTheSerialRunsTable) {
 TEST_F(SweepWorkflowE2e, PowerGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
   base::write_file_atomically(path("plan.toml"),
                               "format = 1\nprotocols = []\ndirectional = false\ntests = \"mixed\"\n");
-  const std::string power =
-      "protocols/task1.toml --n 8:26:2 --studies 120 --world null --plan " + path("plan.toml");
-  const auto serial = test::run_shell(environment() + VIP_BIN_DIR "/vip-stats power " + power + " --json " +
-                                      path("serial.json") + " --csv " + path("serial.csv"));
-  ASSERT_EQ(serial.exit_code, 0) << serial.out;
+  expect_serial_result(
+      "power", "power",
+      "protocols/task1.toml --n 8:26:2 --studies 120 --world null --plan " + path("plan.toml"), 10,
+      {"json", "csv"});
+}
 
-  const std::string arguments = "--config power='" + power + "'";
-  const auto in_cell = [](const Worker& worker) { return !fs::exists(worker.shard); };
-  auto whole = workflow(arguments);
-  stop_a_worker("power", 2, in_cell);
-  ::kill(-whole.pid(), SIGKILL);
-  EXPECT_EQ(whole.wait().signal, SIGKILL);
-  for (const Worker& left : workers()) ::kill(left.pid, SIGKILL);
-  const auto kept = done_shards("power");
-  EXPECT_GE(kept.size(), 2u);
-  EXPECT_LT(kept.size(), 10u);
+TEST_F(SweepWorkflowE2e, AFitGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
+  testing_pilot::write_database(path("pilot.db"), testing_pilot::simulated("ptpe:a=24,b=0.02,noise=1"));
+  expect_serial_result("fit-ptpe", "fit", path("pilot.db") + " --resamples 99000", 6, {"json", "svg"});
+}
 
-  ASSERT_EQ(workflow("--unlock " + arguments).wait().exit_code, 0) << log();
-  auto again = workflow("--rerun-incomplete " + arguments);
-  const Worker worker = stop_a_worker("power", kept.size() + 1, in_cell);
-  ::kill(worker.pid, SIGKILL);
-  ASSERT_EQ(again.wait().exit_code, 0) << log();
-  EXPECT_THAT(log(), ::testing::HasSubstr("Trying to restart job"));
-  expect_kept(kept);
-  for (const char* ending : {".json", ".csv"}) {
-    EXPECT_EQ(base::read_file(path(std::string("out/power/power") + ending), 1 << 24),
-              base::read_file(path(std::string("serial") + ending), 1 << 24));
-  }
+TEST_F(SweepWorkflowE2e, AComparisonGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
+  rival_study::write(path("pilot.db"), 12, [](int person, const study::TimingPredictors& timing) {
+    return std::clamp(static_cast<int>(std::lround(2 * timing[6] - 1 + 0.3 * (person % 3))), 1, 7);
+  });
+  expect_serial_result("compare-models", "compare", path("pilot.db"), 10, {"json"});
 }
 
 }  // namespace
