@@ -17,9 +17,10 @@ bin       folder of the programs (the folders of PATH)
 batch     number of cells for each job (1)
 retries   how often a job that failed or was killed is repeated (2)
 minutes   time limit of a job on a cluster, minutes (8)
-gpus      with accuracy="... --backend cuda": number of GPUs of a machine, each for one job at a time (those of
-          CUDA_VISIBLE_DEVICES, or all that nvidia-smi lists)
-threads   number of threads of a timed cell (--cores, with GPUs divided by their number); required on a cluster
+gpus      with accuracy="... --backend cuda": number of GPUs of a machine, each for one job at a time (those
+          of CUDA_VISIBLE_DEVICES, or all that nvidia-smi lists)
+threads   number of threads of a timed cell (--cores, with GPUs divided by their number); required on a
+          cluster
 slurm     further options of sbatch for timed cells (--exclusive, with GPUs --gres=gpu:1)
 """
 
@@ -96,9 +97,9 @@ if "accuracy" in config:
     with_gpu = f"bash {shlex.quote(os.path.join(workflow.basedir, 'with_gpu.sh'))} {','.join(gpus)} "
     accuracy_batches = batches_of(accuracy)
     results += [f"{OUT}/accuracy/{name}" for name in ("accuracy.html", "sweep.db", "settings.csv")]
-    # A timed job on the CPU runs alone on its machine: it gets all cores of this machine, or a whole node of a
-    # cluster. One on a GPU has this GPU for itself and its share of the cores. The number of threads is stored
-    # with each time, so that the table is made with the same number.
+    # A timed job on the CPU runs alone on its machine: it gets all cores of this machine, or a whole node of
+    # a cluster. One on a GPU has this GPU for itself and its share of the cores. The number of threads is
+    # stored with each time, so that the table is made with the same number.
     timed_threads = int(
         config["threads"] if "threads" in config else max(1, workflow.cores // max(1, len(gpus)))
     )
@@ -196,7 +197,7 @@ for kind, command, endings in (
 
 
 if not results:
-    raise WorkflowError("--config names none of accuracy, power, fit and compare, so that there is nothing to run")
+    raise WorkflowError("--config names none of accuracy, power, fit and compare: there is nothing to run")
 
 
 rule all:

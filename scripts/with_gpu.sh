@@ -49,7 +49,8 @@ else
 fi
 
 machine=$locks/vip-bench.lock
-[ -e "$machine" ] || (umask 022 && : >>"$machine") 2>/dev/null || [ -e "$machine" ] || fail "$machine: cannot be made" "$mend"
+[ -e "$machine" ] || (umask 022 && : >>"$machine") 2>/dev/null || [ -e "$machine" ] ||
+  fail "$machine: cannot be made" "$mend"
 exec 8<"$machine"
 flock -s -n 8 || { say_once "a timed run on this machine ($machine)"; flock -s 8; }
 export VIP_LOCK_DIR=$own

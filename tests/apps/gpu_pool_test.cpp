@@ -175,34 +175,46 @@ TEST_F(WithGpuE2e, RefusesWithRemedies) {
   EXPECT_EQ(start(script_ + " 0 bash -c 'exit 7'").wait().exit_code, 7);
 }
 
-using GpuSweepE2e = GpuPool;
+class GpuSweepE2e : public GpuPool {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0)
+        << "scripts/setup.sh sweeps installs Snakemake";
+  }
+  /// The workflow on two GPUs and six cores.
+  test::Process workflow(const std::string& options = "") const {
+    return start("snakemake -s " + root_ + "/scripts/sweep.smk --cores 6 " + options +
+                 " --config accuracy='--quick --backend cuda' gpus=2 bin=bin out=out >>log 2>&1");
+  }
+  std::string log() const { return base::read_file(at("log"), 1 << 22); }
+  void expect_whole() const {
+    expect_one_each(runs(), {"0", "1"});
+    std::set<std::string> keys;
+    for (const GpuRun& run : runs()) keys.insert(run.key);
+    EXPECT_EQ(keys.size(), 8u);
+    EXPECT_TRUE(fs::exists(at("out/accuracy/accuracy.html")));
+  }
+};
+
+TEST_F(GpuSweepE2e, RunsOneJobOnEachGpu) {
+  ASSERT_EQ(workflow().wait().exit_code, 0) << log();
+  expect_whole();
+  EXPECT_THAT(log(), AllOf(HasSubstr("gpu=1"), HasSubstr("threads: 3")));
+}
 
 TEST_F(GpuSweepE2e, RunsOneJobOnEachGpuAlsoAfterSnakemakeWasKilled) {
-  ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0)
-      << "scripts/setup.sh sweeps installs Snakemake";
-  const std::string workflow = "snakemake -s " + root_ + "/scripts/sweep.smk --cores 6 ";
-  const std::string config = "--config accuracy='--quick --backend cuda' gpus=2 bin=bin out=out >>log 2>&1";
-  const auto log = [&] { return base::read_file(at("log"), 1 << 22); };
-  auto killed = start(workflow + config);
+  auto killed = workflow();
   wait_for(3);
   ::kill(killed.pid(), SIGKILL);  // Snakemake alone: its cells go on
   EXPECT_EQ(killed.wait().signal, SIGKILL);
-  ASSERT_EQ(start(workflow + "--unlock " + config).wait().exit_code, 0) << log();
-  ASSERT_EQ(start(workflow + "--rerun-incomplete " + config).wait().exit_code, 0) << log();
-  const auto all = runs();
-  expect_one_each(all, {"0", "1"});
-  std::set<std::string> keys;
-  for (const GpuRun& run : all) keys.insert(run.key);
-  EXPECT_EQ(keys.size(), 8u);
-  EXPECT_TRUE(fs::exists(at("out/accuracy/accuracy.html")));
-  EXPECT_THAT(log(), AllOf(HasSubstr("gpu=1"), HasSubstr("threads: 3")));
-
-  const auto refused = [&](const std::string& options, const std::string& what) {
-    const auto ended = start(workflow + "-n --config bin=bin " + options + " 2>&1").wait();
-    EXPECT_EQ(ended.exit_code, 1) << options;
-    EXPECT_THAT(ended.out, HasSubstr(what)) << options;
-  };
-  refused("accuracy=--quick gpus=2", "add that, or leave gpus= out");
+  ASSERT_EQ(workflow("--unlock").wait().exit_code, 0) << log();
+  ASSERT_EQ(workflow("--rerun-incomplete").wait().exit_code, 0) << log();
+  expect_whole();
+  const auto refused = start("snakemake -s " + root_ +
+                             "/scripts/sweep.smk --cores 1 -n --config bin=bin accuracy=--quick gpus=2 2>&1")
+                           .wait();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.out, HasSubstr("gpus= is for accuracy with --backend cuda"));
 }
 
 }  // namespace

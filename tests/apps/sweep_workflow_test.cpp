@@ -219,8 +219,11 @@ TEST_F(SweepWorkflowE2e, PowerGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
 }
 
 TEST_F(SweepWorkflowE2e, AFitGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
-  testing_pilot::write_database(path("pilot.db"), testing_pilot::simulated("ptpe:a=24,b=0.02,noise=1"));
-  expect_serial_result("fit-ptpe", "fit", path("pilot.db") + " --resamples 99000", 6, {"json", "svg"});
+  std::vector<std::string> people;
+  for (int p = 1; p <= 16; ++p) people.push_back("P" + std::to_string(p));
+  testing_pilot::write_database(path("pilot.db"), testing_pilot::simulated("ptpe:a=24,b=0.02,noise=1"),
+                                people);
+  expect_serial_result("fit-ptpe", "fit", path("pilot.db") + " --resamples 37000", 6, {"json", "svg"});
 }
 
 TEST_F(SweepWorkflowE2e, AComparisonGoesOnAfterTheWholeWorkflowAndAWorkerWereKilled) {
