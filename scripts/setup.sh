@@ -21,8 +21,8 @@ build=(
   # font of the participant's window; fontconfig finds other fonts of the system
   fonts-dejavu-core libfontconfig-dev
 )
-tests=(libgtest-dev libgmock-dev)
-tools=(sqlite3 locales openxr-layer-corevalidation util-linux xvfb xauth)
+tests=(libgtest-dev libgmock-dev libpq-dev)  # libpq: the central database; the programs build without it
+tools=(sqlite3 postgresql locales openxr-layer-corevalidation util-linux xvfb xauth)
 slow=(xdotool imagemagick)            # for scripts/window_*.sh
 slow+=(debootstrap dpkg-dev file)     # for scripts/package.sh
 # npm installs the BIDS validator (scripts/validate_bids.sh). An npm that is already installed is used.

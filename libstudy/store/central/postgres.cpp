@@ -1,0 +1,399 @@
+#include "libstudy/store/central/postgres.hpp"
+
+#include <libpq-fe.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "stats/base/text.hpp"
+
+namespace study::pg {
+
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr int usual_connect_timeout_s = 10;
+// A cut network is noticed after about this long, both while waiting for an answer and while sending.
+constexpr unsigned usual_silence_ms = 30000;
+constexpr std::size_t copy_buffer_bytes = 1 << 16;
+constexpr std::size_t longest_message = 400;
+
+/// A message of libpq as one line.
+std::string one_line(const std::string& message) {
+  std::string out;
+  for (const char c : message) {
+    if (c != '\n' && c != '\t')
+      out += c;
+    else if (!out.ends_with("; "))
+      out += "; ";
+  }
+  while (out.ends_with("; ")) out.resize(out.size() - 2);
+  return base::shortened(out, longest_message);
+}
+
+/// The option of an open connection, from service file or environment; empty: not set.
+std::string option_of(PGconn* handle, const char* keyword) {
+  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(PQconninfo(handle),
+                                                                               PQconninfoFree);
+  for (const PQconninfoOption* one = options.get(); one && one->keyword; ++one) {
+    if (std::string(one->keyword) == keyword) return one->val ? one->val : "";
+  }
+  return {};
+}
+
+int connect_timeout_of(PGconn* handle) {
+  const int seconds = std::atoi(option_of(handle, "connect_timeout").c_str());
+  return seconds > 0 ? seconds : usual_connect_timeout_s;
+}
+
+/// Waits for the connection's socket. False once the deadline has passed.
+bool wait_for_socket(PGconn* handle, short events, steady_clock::time_point deadline) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
+  if (left <= 0) return false;
+  pollfd socket{PQsocket(handle), events, 0};
+  ::poll(&socket, 1, static_cast<int>(left));
+  return true;
+}
+
+/// Completes a connection that was begun. False if the time is up.
+bool complete_connection(PGconn* handle) {
+  const auto deadline = steady_clock::now() + std::chrono::seconds(connect_timeout_of(handle));
+  auto step = PGRES_POLLING_WRITING;
+  while (step != PGRES_POLLING_OK && step != PGRES_POLLING_FAILED) {
+    if (!wait_for_socket(handle, step == PGRES_POLLING_READING ? POLLIN : POLLOUT, deadline)) return false;
+    step = PQconnectPoll(handle);
+  }
+  return true;
+}
+
+/// Lets a cut network end a wait, unless service or environment set their own times.
+void notice_cut_networks(PGconn* handle) {
+  sockaddr_storage address{};
+  socklen_t length = sizeof address;
+  const int socket = PQsocket(handle);
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) != 0) return;
+  if (address.ss_family != AF_INET && address.ss_family != AF_INET6) return;
+  const auto set = [&](int option, unsigned value) {
+    ::setsockopt(socket, IPPROTO_TCP, option, &value, sizeof value);
+  };
+  if (option_of(handle, "tcp_user_timeout").empty()) set(TCP_USER_TIMEOUT, usual_silence_ms);
+  if (option_of(handle, "keepalives_idle").empty()) {
+    set(TCP_KEEPIDLE, 15);
+    set(TCP_KEEPINTVL, 5);
+    set(TCP_KEEPCNT, 3);
+  }
+}
+
+std::string field(const PGresult* result, int code) {
+  const char* text = PQresultErrorField(result, code);
+  return text ? text : "";
+}
+
+/// What the user can do about a failure, by the first two characters of its sqlstate.
+std::string mend_of(const std::string& sqlstate, bool lost) {
+  const std::string kind = sqlstate.substr(0, 2);
+  if (sqlstate == "42501") return "connect as a role with that right: docs/central.md lists the roles";
+  if (kind == "28") return "check user and password file of the service";
+  if (sqlstate == "42P01" || sqlstate == "3F000")
+    return "make the central database once, as its owner: vip-study central init --service NAME";
+  if (kind == "22" || kind == "23") return "nothing of it was stored; find the row in the database";
+  if (kind == "53") return "free disk or memory at the server, then give the command again";
+  if (lost || kind == "08" || kind == "57" || kind == "40") return "give the command again";
+  return "see the log of the server";
+}
+
+/// A row as a line of COPY's text format.
+void append_line(const Row& row, std::string& out) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) out += '\t';
+    if (!row[i]) {
+      out += "\\N";
+      continue;
+    }
+    for (const char c : *row[i]) {
+      switch (c) {
+        case '\\':
+          out += "\\\\";
+          break;
+        case '\n':
+          out += "\\n";
+          break;
+        case '\r':
+          out += "\\r";
+          break;
+        case '\t':
+          out += "\\t";
+          break;
+        default:
+          out += c;
+      }
+    }
+  }
+  out += '\n';
+}
+
+char unescaped(char c) {
+  switch (c) {
+    case 'b':
+      return '\b';
+    case 'f':
+      return '\f';
+    case 'n':
+      return '\n';
+    case 'r':
+      return '\r';
+    case 't':
+      return '\t';
+    case 'v':
+      return '\v';
+    default:
+      return c;
+  }
+}
+
+/// Splits a line of COPY's text format, with its end of line.
+void split_line(std::string_view line, Row& row) {
+  row.clear();
+  if (!line.empty() && line.back() == '\n') line.remove_suffix(1);
+  std::string value;
+  bool null = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i == line.size() || line[i] == '\t') {
+      row.push_back(null ? Field() : Field(std::move(value)));
+      value.clear();
+      null = false;
+    } else if (line[i] == '\\' && i + 1 < line.size()) {
+      null = line[++i] == 'N' && value.empty();
+      if (!null) value += unescaped(line[i]);
+    } else {
+      value += line[i];
+    }
+  }
+}
+
+}  // namespace
+
+struct Connection::Link {
+  PGconn* handle = nullptr;
+  ~Link() { PQfinish(handle); }
+};
+
+struct Connection::Answer {
+  std::unique_ptr<PGresult, void (*)(PGresult*)> result;
+  explicit Answer(PGresult* given) : result(given, PQclear) {}
+};
+
+Connection::Connection(const std::string& service) : service_(service), link_(std::make_unique<Link>()) {
+  check_service_name(service);
+  const char* keywords[] = {"service", "fallback_application_name", "client_encoding", nullptr};
+  const char* values[] = {service.c_str(), "vip-lab", "UTF8", nullptr};
+  link_->handle = PQconnectStartParams(keywords, values, 0);
+  if (!link_->handle) throw std::bad_alloc();
+  PQsetNoticeProcessor(
+      link_->handle, [](void*, const char*) {}, nullptr);
+  const bool in_time = PQstatus(link_->handle) == CONNECTION_BAD || complete_connection(link_->handle);
+  if (!in_time) {
+    throw Failure(service, "no answer within " + std::to_string(connect_timeout_of(link_->handle)) + " s",
+                  "check network, host and port of the service; connect_timeout sets another time", "", true);
+  }
+  if (PQstatus(link_->handle) != CONNECTION_OK) {
+    const std::string message = one_line(PQerrorMessage(link_->handle));
+    const bool unknown = message.find("definition of service") != std::string::npos;
+    throw Failure(service, message,
+                  unknown ? "add the section [" + service +
+                                "] to ~/.pg_service.conf or to the file that PGSERVICEFILE names"
+                          : "check the section [" + service +
+                                "] of libpq's service file, the password file and whether the server runs",
+                  "", !unknown);
+  }
+  notice_cut_networks(link_->handle);
+  // Messages about rows must not depend on settings of the role. A search path without the role's own schemas
+  // lets no other role's table or function stand in for a table of the program.
+  script(
+      "SET search_path = pg_catalog; SET standard_conforming_strings = on; SET extra_float_digits = 1; "
+      "SET DateStyle = ISO; SET client_min_messages = warning");
+}
+
+Connection::~Connection() = default;
+
+void check_service_name(const std::string& service) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  if (!service.empty() && std::all_of(service.begin(), service.end(), plain)) return;
+  // The text is not shown, because it may contain a password.
+  throw base::Error(
+      "service", "is not a name of letters, digits, '.', '_' and '-'",
+      "give the name of a section of libpq's service file, ~/.pg_service.conf, which holds host and "
+      "database; passwords belong in ~/.pgpass");
+}
+
+void Connection::fail() const {
+  throw Failure(service_, one_line(PQerrorMessage(link_->handle)), mend_of("", true), "", true);
+}
+
+Connection::Answer Connection::check(Answer answer) const {
+  const PGresult* result = answer.result.get();
+  if (!result) fail();
+  const auto status = PQresultStatus(result);
+  if (status != PGRES_FATAL_ERROR && status != PGRES_BAD_RESPONSE) return answer;
+  const std::string state = field(result, PG_DIAG_SQLSTATE), context = field(result, PG_DIAG_CONTEXT);
+  // The status of the connection can still be good: libpq sees the end at its next statement. Then no state
+  // came from the server, or 57P0x, with which it ends a session.
+  const bool lost = PQstatus(link_->handle) == CONNECTION_BAD || state.empty() || state.starts_with("57P0");
+  std::string problem = field(result, PG_DIAG_MESSAGE_PRIMARY);
+  if (problem.empty()) problem = one_line(PQresultErrorMessage(result));
+  // The place in a COPY: "COPY frame, line 3, column late". It may go on with the value, which is left out.
+  if (context.starts_with("COPY ")) problem += " (" + context.substr(0, context.find_first_of(":\n")) + ")";
+  throw Failure(service_, one_line(problem), mend_of(state, lost), state, lost);
+}
+
+Rows Connection::run(const std::string& sql, const std::vector<Field>& values) {
+  std::vector<const char*> texts;
+  for (const Field& value : values) {
+    if (value && value->find('\0') != std::string::npos) {
+      throw Failure(service_, "a text contains a NUL byte, which PostgreSQL cannot store",
+                    mend_of("22021", false), "22021", false);
+    }
+    texts.push_back(value ? value->c_str() : nullptr);
+  }
+  const Answer answer = check(Answer(PQexecParams(link_->handle, sql.c_str(), static_cast<int>(texts.size()),
+                                                  nullptr, texts.data(), nullptr, nullptr, 0)));
+  const PGresult* result = answer.result.get();
+  Rows rows;
+  rows.changed_ = std::atoll(PQcmdTuples(const_cast<PGresult*>(result)));
+  for (int i = 0; i < PQntuples(result); ++i) {
+    Row& row = rows.rows_.emplace_back();
+    for (int j = 0; j < PQnfields(result); ++j) {
+      const auto length = static_cast<std::size_t>(PQgetlength(result, i, j));
+      row.push_back(PQgetisnull(result, i, j) ? Field()
+                                              : Field(std::string(PQgetvalue(result, i, j), length)));
+    }
+  }
+  return rows;
+}
+
+void Connection::script(const std::string& sql) { check(Answer(PQexec(link_->handle, sql.c_str()))); }
+
+std::int64_t Connection::copy_in(const std::string& sql, const std::function<bool(Row&)>& next) {
+  check(Answer(PQexec(link_->handle, sql.c_str())));
+  std::int64_t rows = 0;
+  std::string buffer;
+  Row row;
+  const auto send = [&] {
+    if (PQputCopyData(link_->handle, buffer.data(), static_cast<int>(buffer.size())) != 1) fail();
+    bytes_sent_ += static_cast<std::int64_t>(buffer.size());
+    buffer.clear();
+  };
+  try {
+    for (; next(row); ++rows) {
+      append_line(row, buffer);
+      if (buffer.size() > copy_buffer_bytes) send();
+    }
+    if (!buffer.empty()) send();
+  } catch (...) {
+    PQputCopyEnd(link_->handle, "the client stopped");
+    while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
+    throw;
+  }
+  if (PQputCopyEnd(link_->handle, nullptr) != 1) fail();
+  Answer answer(PQgetResult(link_->handle));
+  while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
+  check(std::move(answer));
+  return rows;
+}
+
+void Connection::copy_out(const std::string& sql, const std::function<void(const Row&)>& take) {
+  check(Answer(PQexec(link_->handle, sql.c_str())));
+  Row row;
+  char* line = nullptr;
+  int length = 0;
+  while ((length = PQgetCopyData(link_->handle, &line, 0)) > 0) {
+    const std::unique_ptr<char, void (*)(void*)> kept(line, PQfreemem);
+    split_line({line, static_cast<std::size_t>(length)}, row);
+    try {
+      take(row);
+    } catch (...) {
+      // The rest of the rows is not read, so that the connection is of no more use.
+      PQfinish(std::exchange(link_->handle, nullptr));
+      throw;
+    }
+  }
+  if (length == -2) fail();
+  Answer answer(PQgetResult(link_->handle));
+  while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
+  check(std::move(answer));
+}
+
+void Connection::cancel() const {
+  const std::unique_ptr<PGcancel, void (*)(PGcancel*)> request(PQgetCancel(link_->handle), PQfreeCancel);
+  char problem[256] = "";
+  if (request) PQcancel(request.get(), problem, sizeof problem);
+}
+
+Transaction::Transaction(Connection& connection, const std::string& begin) : connection_(&connection) {
+  connection.script(begin);
+}
+
+Transaction::~Transaction() {
+  if (!open_) return;
+  try {
+    connection_->script("ROLLBACK");
+  } catch (const std::exception&) {
+    // The connection is lost: the server rolls back by itself.
+  }
+}
+
+void Transaction::commit() {
+  open_ = false;
+  connection_->script("COMMIT");
+}
+
+const Field& Rows::at(int row, int column) const {
+  return rows_.at(static_cast<std::size_t>(row)).at(static_cast<std::size_t>(column));
+}
+
+const std::string& Rows::text(int row, int column) const {
+  const Field& value = at(row, column);
+  if (!value) throw std::logic_error("a column of PostgreSQL's answer is NULL");
+  return *value;
+}
+
+std::int64_t Rows::integer(int row, int column) const { return std::stoll(text(row, column)); }
+
+std::string text_of(std::int64_t value) { return std::to_string(value); }
+
+std::string text_of(double value) {
+  if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
+  if (std::isnan(value)) return "NaN";
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return {text, end.ptr};
+}
+
+std::string quoted_name(const std::string& name) {
+  std::string out = "\"";
+  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string quoted_text(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace study::pg
