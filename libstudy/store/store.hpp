@@ -28,6 +28,8 @@
 namespace study {
 
 struct LightEvidence;  // light_evidence.hpp
+struct ReservedSlot;   // reserved_slots.hpp
+struct SlotRequest;    // reserved_slots.hpp
 
 class AnswerJournal;
 
@@ -67,6 +69,7 @@ struct SessionPlan {
   std::optional<StationNumber> station_number;
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;  ///< refresh rate of the display; none: frames are shown when ready
+  std::string reservation;           ///< ReservedSlot::name() of its slot; empty: the station chose the slot
   /// framing of each scene; empty if nothing is drawn, and in plans that open_runs() returns
   std::vector<SceneFraming> framing;
   Plan plan;
@@ -206,6 +209,18 @@ class Store {
   /// that some of these sessions have no station number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
+  /// All slots that central databases were asked for, in the order of asking, then of their places.
+  std::vector<ReservedSlot> reserved_slots();
+  /// Commits a request for slots before it is sent; returns its token. So a request whose answer was lost is
+  /// sent again with the same token, and gets the same slots.
+  std::string ask_slots(const SlotRequest& request);
+  /// Commits the answer to a request. slots: by place. base::Error unless there is one for each place.
+  void hold_slots(const std::string& token, const std::vector<int>& slots);
+  /// Commits that no session will take these slots, before the central database is told.
+  void release_slots(std::span<const ReservedSlot> slots);
+  /// Commits that the central database knows that these slots were released.
+  void forget_slots(std::span<const ReservedSlot> slots);
+
   /// Commits the cells that an adaptive procedure chose for a trial that is not done.
   void choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second);
   /// The answers of a session to a question of its stimulus block, in the order of the trials' positions.
@@ -331,6 +346,7 @@ class Store {
   void insert_event(std::optional<std::int64_t> session, std::optional<std::int64_t> presentation,
                     const std::string& kind, const std::string& detail, std::optional<std::int64_t> clock_ns);
 
+  void set_slot_state(std::span<const ReservedSlot> slots, const char* state);
   void keep_file();
 
   std::filesystem::path path_;

@@ -299,9 +299,10 @@ std::int64_t Store::add_session(std::int64_t run_id, std::int64_t protocol_id, c
       "INSERT INTO session (uid, run_id, protocol_id, participant, code, visit, seed, slot, state, "
       "test_data, observer, clock, display, stimulus, machine, station, time_zone, gaze_source, "
       "screen_width_mm, viewing_distance_mm, ptpe, refresh_hz, station_number, station_count, "
-      "not_before_utc, person) SELECT lower(hex(randomblob(16))), "
+      "not_before_utc, reservation, person) SELECT lower(hex(randomblob(16))), "
       "?1, ?2, ?3, coalesce((SELECT code FROM session WHERE participant = ?3), ?3), ?4, ?5, ?6, 'open', "
       "?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, nullif(?22, ''), "
+      "nullif(?23, ''), "
       "coalesce((SELECT person FROM session WHERE participant = ?3), lower(hex(randomblob(16))))");
   const std::int64_t session =
       insert
@@ -309,7 +310,7 @@ std::int64_t Store::add_session(std::int64_t run_id, std::int64_t protocol_id, c
                     plan.test_data ? 1 : 0, plan.observer, plan.virtual_clock ? "virtual" : "real",
                     plan.display, plan.stimulus, plan.machine, plan.station, plan.time_zone, plan.gaze_source,
                     plan.screen_width_mm, plan.viewing_distance_mm, plan.ptpe, plan.refresh_hz, number, count,
-                    not_before_utc)
+                    not_before_utc, plan.reservation)
           .run();
   insert_framing(*database_, session, plan.framing);
   add_units(*database_, session, protocol, plan.plan);

@@ -254,6 +254,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(9),
       upgrade_from(10),
       upgrade_from(11),
+      upgrade_from(12),
   };
   return flows;
 }

@@ -114,7 +114,7 @@ TEST(AnswerJournal, FollowsEveryTableButThoseItNames) {
   }
   EXPECT_THAT(left,
               ::testing::ElementsAre("chore", "export", "export_person", "frame", "gaze", "gaze_validation",
-                                     "head", "light", "marker", "slot", "tracker_clock"));
+                                     "head", "light", "marker", "reserved_slot", "slot", "tracker_clock"));
 }
 
 TEST(AnswerJournal, EqualsTheDatabaseAfterAllThatHappensInASession) {

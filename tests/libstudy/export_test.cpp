@@ -72,7 +72,7 @@ TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
     }
     EXPECT_FALSE(info.step()) << table.text(0);
   }
-  EXPECT_EQ(tables, 29);
+  EXPECT_EQ(tables, 30);
 }
 
 TEST(ExportCsv, RatingsHoldEveryPlannedTrialOnce) {

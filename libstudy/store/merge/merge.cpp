@@ -9,6 +9,7 @@
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/file/beside.hpp"
 #include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/schema.hpp"
 #include "libstudy/store/file/writer_lock.hpp"
 #include "libstudy/store/merge/merge_parts.hpp"
 #include "libstudy/store/open_study.hpp"
@@ -187,6 +188,18 @@ void carry_chores_over(Connection& into, Connection& result) {
   }
 }
 
+/// Copies the slots that a central database reserved for the station of `into`. Those of other stations stay
+/// with their databases, so that no slot is dealt twice.
+void carry_reserved_slots_over(Connection& into, Connection& result) {
+  const std::string columns = listed(columns_of("reserved_slot"));
+  Statement row(into, "SELECT " + columns + " FROM reserved_slot");
+  Statement insert(result, "INSERT INTO reserved_slot (" + columns + ") VALUES (?,?,?,?,?,?,?,?,?)");
+  while (row.step()) {
+    for (int i = 0; i < row.columns(); ++i) insert.bind_from(i, row, i);
+    insert.run();
+  }
+}
+
 /// Plans chores in `result`, the merged database: to delete people who withdrew from the files beside it, to
 /// change codes there as in `names`, and to rewrite the database file. Adds those people to merge.buried.
 void plan_chores(Connection& result, const std::vector<Resident>& residents,
@@ -229,6 +242,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
 
   const auto target = open_database(into, Open::Create, read_schema_steps());
   carry_chores_over(*target, *result);
+  carry_reserved_slots_over(*target, *result);
   plan_chores(*result, residents_of(*target), names, content, merge);
   std::vector<std::string> withdrawn;
   for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);

@@ -24,6 +24,7 @@ struct SessionCopy {
   std::int64_t gaze = 0;                            ///< number of gaze samples, head poses and validations
   std::optional<StationNumber> station_number;
   bool counts = false;  ///< true: the session counts as a use of its slot (Store::taken_slots())
+  bool reserved = false;  ///< true: a central database dealt its slot (ReservedSlot)
 };
 
 struct Tombstone {
@@ -53,7 +54,8 @@ std::map<std::string, std::string> name_people(const Content& content);
 /// Reasons why stations may have assigned the same slots (positions in the counterbalancing, of which each
 /// station must use its own share): two sources with the same station number (or both without one) each have
 /// a session that the other lacks; sessions were recorded with different numbers of stations; or only some
-/// sessions have a station number. Each reason is a sentence without a full stop.
+/// sessions have a station number. Leaves out sessions whose slot a central database dealt. Each reason is a
+/// sentence without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the chosen sessions, with the people's new codes `names`, into `target`, an empty database of the

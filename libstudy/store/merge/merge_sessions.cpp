@@ -28,7 +28,8 @@ constexpr const char* merged_sessions_sql =
     "WHERE t.session_id = s.session_id) + "
     "(SELECT count(*) FROM head JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
     "WHERE t.session_id = s.session_id) + "
-    "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
+    "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id), "
+    "s.reservation IS NOT NULL "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
 /// The events of a session as text, without permission changes: permissions may change in any copy of the
@@ -124,6 +125,7 @@ void add_source(Content& content, std::unique_ptr<Connection> source) {
           StationNumber{static_cast<int>(row.integer(13)), static_cast<int>(row.integer(14))};
     copy.counts = row.integer(15) != 0;
     copy.gaze = row.integer(16);
+    copy.reserved = row.integer(17) != 0;
     content.copies.push_back(std::move(copy));
   }
   Statement stone(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone");
@@ -242,7 +244,8 @@ struct Dealt {
 std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& protocol) {
   std::vector<Dealt> all;
   for (const SessionCopy& copy : content.copies) {
-    if (!copy.counts || copy.protocol_sha256 != protocol || content.tombstones.contains(copy.person))
+    if (!copy.counts || copy.reserved || copy.protocol_sha256 != protocol ||
+        content.tombstones.contains(copy.person))
       continue;
     const auto same = [&](const Dealt& one) {
       return one.source == copy.source && one.number == copy.station_number;

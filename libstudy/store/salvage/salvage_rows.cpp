@@ -97,7 +97,7 @@ void Rebuild::take(RowsByTable rows) {
   for (const Table& table : journal::tables()) {
     if (table.name != order.front()) order.emplace_back(table.name);
   }
-  order.insert(order.end(), {"export", "export_person"});
+  order.insert(order.end(), {"export", "export_person", "reserved_slot"});
   for (const std::string& name : order) {
     take_table(shape_of(name), std::move(rows[name]));
     if (const Table* table = journal::find_table(name)) {

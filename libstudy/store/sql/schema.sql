@@ -191,7 +191,7 @@ CREATE TABLE "session" (
   viewing_distance_mm REAL CHECK (viewing_distance_mm > 0), -- eye to screen, mm
   ptpe TEXT, -- PTPE file in force, in full; empty: none
   started_utc TEXT, -- first trial began
-  ended_utc TEXT, station_number INTEGER /* number of the station among those of the study, from 1; it chose the slot and the seed; empty: the station had no number */, station_count INTEGER /* stations of the study, as this one was told; empty: likewise */, not_before_utc TEXT /* latest time that stood in the database when the session was planned: the session came after it, whatever its clock says; empty: nothing stood there, or recorded by an earlier version */, imported_from TEXT /* program that recorded the session elsewhere, as the mapping of vip-study import names it; empty: vip-study recorded it */, source_sha256 TEXT /* SHA-256 of the file from which its answers were imported; empty: not imported */, -- last unit done, or ended early
+  ended_utc TEXT, station_number INTEGER /* number of the station among those of the study, from 1; it chose the slot and the seed; empty: the station had no number */, station_count INTEGER /* stations of the study, as this one was told; empty: likewise */, not_before_utc TEXT /* latest time that stood in the database when the session was planned: the session came after it, whatever its clock says; empty: nothing stood there, or recorded by an earlier version */, imported_from TEXT /* program that recorded the session elsewhere, as the mapping of vip-study import names it; empty: vip-study recorded it */, source_sha256 TEXT /* SHA-256 of the file from which its answers were imported; empty: not imported */, reservation TEXT /* slot that a central database reserved for it: token, full stop and place of reserved_slot; empty: the station chose the slot itself */, -- last unit done, or ended early
   UNIQUE (participant, protocol_id, visit)
 ) STRICT;
 
@@ -421,6 +421,20 @@ CREATE TABLE light (
   worst_ms REAL, -- largest deviation from lag_ms, ms; empty: likewise
   drift_ppm REAL NOT NULL -- how much faster the sensor's clock ran than the computer's, parts per million
 ) STRICT;
+
+CREATE TABLE reserved_slot (
+  token TEXT NOT NULL CHECK (length(token) = 32), -- random; recognises the request for slots, which may be sent again
+  place INTEGER NOT NULL CHECK (place >= 0), -- number of the slot in its request, from 0
+  service TEXT NOT NULL, -- central database that was asked, by its name in the file of services
+  protocol_sha256 TEXT NOT NULL CHECK (length(protocol_sha256) = 64), -- protocol of the assignment, as in protocol
+  slots INTEGER NOT NULL CHECK (slots >= 1), -- slots that its assignment has
+  block INTEGER NOT NULL CHECK (block IN (0, 1)), -- 1: reserved in advance, kept for times without a network; 0: asked for by a run
+  slot INTEGER CHECK (slot >= 0 AND slot < slots), -- slot of the assignment, as in session; empty: the answer did not come yet
+  state TEXT NOT NULL CHECK (state IN ('asked', 'held', 'returning', 'returned')), -- asked: the answer did not come yet; held: a session has it, or may take it; returning: the central database does not know yet; returned: it does
+  asked_utc TEXT NOT NULL, -- when it was asked for
+  CHECK ((slot IS NULL) = (state = 'asked')),
+  PRIMARY KEY (token, place)
+) STRICT, WITHOUT ROWID;
 
 CREATE INDEX event_of_session ON event (session_id);
 
