@@ -183,7 +183,7 @@ class Collector {
         stats::is_excluded(data_.exclusions, session.participant, session.visit, trial.position);
     const auto record = record_of(session, trial, data_.question);
     const bool analysed = !repeat && record.answers > 0 && !excluded;
-    add_showings(trial, analysed);
+    add_showings(session, trial, analysed);
     if (repeat) {
       ++data_.flow.repeat;
       if (!excluded) add_repeat(session, trial);
@@ -241,9 +241,10 @@ class Collector {
     }
   }
 
-  void add_showings(const TaskTrial& trial, bool analysed) {
-    if (trial.first.played) data_.showings.push_back({trial.first, analysed});
-    if (trial.second && trial.second->played) data_.showings.push_back({*trial.second, analysed});
+  void add_showings(const TaskSession& session, const TaskTrial& trial, bool analysed) {
+    if (trial.first.played) data_.showings.push_back({trial.first, analysed, session.station});
+    if (trial.second && trial.second->played)
+      data_.showings.push_back({*trial.second, analysed, session.station});
   }
 
   bool add_report(const TaskSession& session, const TaskTrial& trial) {

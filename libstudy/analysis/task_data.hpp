@@ -38,6 +38,7 @@ struct TaskFlow {
 struct TimedShowing {
   TaskShowing shown;
   bool analysed = false;  ///< true if the showing's trial is analysed: answered, not excluded and no repeat
+  std::string station = {};  ///< TaskSession::station
 };
 
 /// An analysed trial with all of its answers.

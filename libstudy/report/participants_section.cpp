@@ -169,6 +169,7 @@ std::string timing_of(const Field& root, const Field& total) {
                        (key == "pilot" ? std::string("setting") : "method and " + n_star_sign) +
                        ", where a showing was degraded or failed.") +
             certificate(root, total, title + ": cells in which a showing was degraded or failed", true);
+  body += station_timing(root, key, title);
   return subsection(title, body + details("The certificate of all cells of " + title,
                                           certificate(root, total, "Timing certificate, " + title, false)));
 }

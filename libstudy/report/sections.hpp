@@ -33,6 +33,8 @@ std::string not_analysed_section(const Field& root);
 std::string methods_section(const Field& root);
 std::string participants_section(const Field& root);
 std::string timing_section(const Field& root);
+/// A table of a task's showings by station; "" if all are of one station. title: the task's; may be empty.
+std::string station_timing(const Field& root, const std::string& task, const std::string& title);
 /// Describes the answers to each question in each cell, for any protocol.
 std::string descriptives_section(const Field& root);
 /// Time and error of each stimulus's frames, beside the answers to it.

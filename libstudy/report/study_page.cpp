@@ -253,7 +253,7 @@ std::string shown_section(const Field& root) {
                count(cell["degraded"]), count(cell["fail"]), count(cell["unjudged"]),
                fixed(cell["realised_mean_fps"], 2), fixed(cell["realised_sd_fps"], 2),
                fixed(cell["longest_ms"], 1), count(cell["late_frames"])});
-  return table.empty() ? "" : section("timing", "Timing", table.html());
+  return table.empty() ? "" : section("timing", "Timing", table.html() + station_timing(root, "own", ""));
 }
 
 }  // namespace

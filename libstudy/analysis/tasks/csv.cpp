@@ -188,6 +188,7 @@ void write_document(const Json& results, const std::filesystem::path& folder, co
   std::vector<std::pair<std::string, Json>> lists{
       {"timing", results.at("timing")},
       {"timing_totals", results.value("timing_totals", Json::array())},
+      {"timing_stations", results.value("timing_stations", Json::array())},
       {"response_times", results.value("response_times", Json::array())},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};

@@ -11,6 +11,7 @@
 #include "libstudy/analysis/tasks/hypotheses_json.hpp"
 #include "libstudy/analysis/tasks/people_json.hpp"
 #include "libstudy/analysis/tasks/sensitivity.hpp"
+#include "libstudy/analysis/tasks/station_timing.hpp"
 #include "libstudy/analysis/tasks/task1_json.hpp"
 #include "libstudy/analysis/tasks/task2_json.hpp"
 #include "libstudy/protocol/method_claims.hpp"
@@ -187,10 +188,12 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
          {"reason",
           "it lacks the key task, so that only vip-stats study tests it, in a study with "
           "factors; a hypothesis about methods has task = \"task1\" or \"task2\""}});
+  Json stations = Json::array();
   for (const TaskPart& part : parts) {
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));
     append(json["timing"], timing_json(part.data));
+    append(stations, station_timing_json(part.data));
     append(json["response_times"], response_times_json(part.data));
     append(json["costs"], costs_json(part.data, request.sweep.get()));
     if (!varies_own_factors(part.data))
@@ -198,6 +201,7 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
     append(json["not_analysed"], not_analysed_json(part));
   }
   json["timing_totals"] = timing_totals_json(json["timing"]);
+  if (!stations.empty()) json["timing_stations"] = std::move(stations);
   for (const TaskPart& part : parts) json[task_name(part.data.task)] = part.results;
   json["hypotheses"] = Json::array();
   json["sensitivity"] = Json::array();

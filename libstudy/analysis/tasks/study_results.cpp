@@ -8,6 +8,7 @@
 
 #include "libstudy/analysis/plan_hypotheses.hpp"
 #include "libstudy/analysis/tasks/data_json.hpp"
+#include "libstudy/analysis/tasks/station_timing.hpp"
 #include "libstudy/analysis/tasks/study_tables.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -266,6 +267,8 @@ Json factor_study_json(const TaskStudy& study, const TaskProtocol& protocol,
   Json thresholds = thresholds_json(data, person_tracks(data), plan.confidence, by_threshold);
   if (!thresholds.is_null()) json["thresholds"] = std::move(thresholds);
   json["timing"] = timing_by_cell_json(data);
+  Json stations = station_timing_json(data);
+  if (!stations.empty()) json["timing_stations"] = std::move(stations);
   return json;
 }
 
@@ -280,6 +283,8 @@ std::vector<std::pair<std::string, Json>> factor_study_tables(const Json& docume
       {"descriptives", cells},
       {"descriptives_answers", unfolded(cells, "counts")},
       {"timing", document.at("timing")}};
+  if (document.contains("timing_stations"))
+    out.emplace_back("timing_stations", document.at("timing_stations"));
   if (document.contains("thresholds")) {
     const Json& thresholds = document.at("thresholds");
     out.emplace_back("thresholds", thresholds.at("participants"));
