@@ -3,8 +3,11 @@
 
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/remote/central_study.hpp"
 
 int main(int argc, char** argv) {
+  study::read_central_with(study::read_central_study);
   const auto app = apps::new_program("Statistics of ViP-Lab studies", "vip-stats");
   apps::add_fit_ptpe_command(*app);
   apps::add_fit_people_command(*app);

@@ -30,6 +30,7 @@ void add_withdraw_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
+void add_slots_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 void add_markers_command(CLI::App& app);
 void add_light_command(CLI::App& app);
@@ -43,6 +44,8 @@ void add_marker_pulse(CLI::App& command, CLI::Option* receiver, study::MarkerPul
 std::string gaze_source_problem(const std::string& text);
 /// Adds --gaze-turn, the fixed rotation of an outside eye tracker's rays (study::rotation_of()).
 void add_gaze_turn(CLI::App& command, std::array<double, 3>& turn_deg);
+/// Empty for a name of libpq's service file; otherwise base::Error (study::pg::check_service_name()).
+std::string service_name_problem(const std::string& name);
 /// Says on the standard error if gaze from an outside eye tracker crosses a network.
 void tell_of_network(const std::string& gaze);
 

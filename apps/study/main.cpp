@@ -1,7 +1,10 @@
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/remote/central_study.hpp"
 
 int main(int argc, char** argv) {
+  study::read_central_with(study::read_central_study);
   const auto app = apps::new_program("Studies of people's perception of real-time fluid", "vip-study");
   apps::add_check_command(*app);
   apps::add_headset_command(*app);
@@ -21,5 +24,6 @@ int main(int argc, char** argv) {
   apps::add_merge_command(*app);
   apps::add_import_command(*app);
   apps::add_salvage_command(*app);
+  apps::add_slots_command(*app);
   return apps::run_program(*app, argc, argv);
 }

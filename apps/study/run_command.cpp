@@ -16,6 +16,7 @@
 #include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/store/remote/slot_server.hpp"
 #include "libstudy/trackers/eye_tracker.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -40,6 +41,7 @@ struct RunCommand {
   std::int64_t seed = 0;
   std::optional<double> trial_seconds;
   std::string bake, ptpe;
+  std::string slots_from;  ///< service of the central database that deals the slots; empty: this station does
   std::vector<std::string> settings;  ///< paths of setting files
   std::optional<base::PictureSize> size;
 };
@@ -134,15 +136,45 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   return session;
 }
 
-/// Plans a session for each participant, each at the slot of the assignment that study::next_slot() returns.
+/// Slots that this station deals by itself: those that study::next_slot() returns.
+std::vector<study::DealtSlot> own_slots(const study::Protocol& protocol, std::vector<int> taken,
+                                        const std::optional<study::StationNumber>& number,
+                                        std::size_t wanted) {
+  std::vector<study::DealtSlot> out;
+  while (out.size() < wanted) {
+    taken.push_back(study::next_slot(protocol, taken, number));
+    out.push_back({taken.back(), {}});
+  }
+  return out;
+}
+
+/// Slots of the assignment for this many sessions, from this station or from the central database.
+std::vector<study::DealtSlot> slots_for(const RunCommand& command, study::Store& store,
+                                        const study::Protocol& protocol,
+                                        const std::optional<study::StationNumber>& number,
+                                        std::size_t wanted) {
+  if (command.slots_from.empty())
+    return own_slots(protocol, store.taken_slots(protocol.sha256), number, wanted);
+  std::string offline;
+  const auto slots = study::deal_slots(
+      store, [&] { return study::connect_slots(command.slots_from); },
+      {command.slots_from, protocol.sha256, study::slot_count(protocol), static_cast<int>(wanted), false},
+      offline);
+  if (!offline.empty())
+    std::fprintf(stderr, "service %s: %s; slots that were reserved in advance are used\n",
+                 command.slots_from.c_str(), offline.c_str());
+  return slots;
+}
+
+/// Plans a session for each participant, each at its slot.
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
-                             std::vector<int> taken) {
+                             const std::vector<study::DealtSlot>& slots) {
   study::RunPlan run{protocol, study::format_run_options(command.run), {}};
-  for (const std::string& code : codes) {
-    taken.push_back(study::next_slot(protocol, taken, session.station_number));
-    session.participant = code;
-    session.plan = study::make_plan(protocol, code, session.seed, taken.back());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    session.participant = codes[i];
+    session.plan = study::make_plan(protocol, codes[i], session.seed, slots[i].slot);
+    session.reservation = slots[i].reservation;
     run.sessions.push_back(session);
   }
   return run;
@@ -183,8 +215,8 @@ Played play_planned(const RunCommand& command, const study::Protocol& protocol,
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
   setup.warnings = warn_of_station(store, command.play.database);
   check_station_number(store, protocol, common, command.play.database.string());
-  const std::int64_t run_id =
-      store.add_run(make_run_plan(command, protocol, common, codes, store.taken_slots(protocol.sha256)));
+  const auto slots = slots_for(command, store, protocol, common.station_number, codes.size());
+  const std::int64_t run_id = store.add_run(make_run_plan(command, protocol, common, codes, slots));
   Played played;
   for (const study::OpenRun& open : store.open_runs()) {
     if (open.id != run_id) continue;
@@ -318,6 +350,10 @@ void add_run_command(CLI::App& app) {
                  "Name of the station, kept with the sessions. A number at its end, 2/5 or \"lab2 2/5\" for "
                  "station 2 of 5, gives the station its own share of the assignment and its own orders")
       ->check(text_up_to(100));
+  sub.add_option("--slots-from", command->slots_from,
+                 "Take slots of the assignment from a central database, named by its section in libpq's "
+                 "service file; while it cannot be reached, from those of vip-study slots reserve")
+      ->check(&service_name_problem);
   add_viewing(sub, command->run.screen_width_mm, command->run.viewing_distance_mm,
               "Width of the participant's picture on the screen: with the distance it gives visual angles");
   add_size(sub, command->size,

@@ -37,6 +37,10 @@ fs::path without_links(const fs::path& path) {
   return fs::weakly_canonical(target.parent_path()) / target.filename();
 }
 
+fs::path place_of_study(const fs::path& database) {
+  return service_of(database) ? database : fs::weakly_canonical(real_file(database));
+}
+
 void check_writable(const fs::path& file) {
   if (::access(file.c_str(), W_OK) == 0 && ::access(fs::absolute(file).parent_path().c_str(), W_OK) == 0)
     return;
@@ -115,6 +119,7 @@ std::set<std::string> everybody(Connection& database) {
 }
 
 void label_everybody(const fs::path& database) {
+  if (service_of(database)) return;  // read_central_study() gave the labels
   const auto file = open_register(database);
   Transaction transaction(*file);
   give_labels(*file);
@@ -123,6 +128,7 @@ void label_everybody(const fs::path& database) {
 
 std::unique_ptr<Connection> open_to_export(const StudyFile& study) {
   auto database = open_study(study).database;
+  if (service_of(study.path)) return database;
   if (database->text("PRAGMA journal_mode") != "delete") return database;
   database.reset();
   const fs::path file = real_file(study.path);
@@ -140,12 +146,16 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
       own_{.id = new_export_id(),
            .host = this_host(),
            .kind = kind,
-           .database = fs::weakly_canonical(real_file(database)),
+           .database = place_of_study(database),
            .path = without_links(path),
            .draft = {},
            .sha256 = {},
            .people = people} {
   own_.draft = draft.empty() ? fs::path(own_.path.string() + ".tmp" + own_.id) : without_links(draft);
+  if (service_of(database_)) {
+    keep_own();
+    return;
+  }
   const JournalContent journal = read_journal(journal_beside(database_));
   const std::int64_t journal_event = std::max(last_event(journal.kept), last_event(journal.pending));
   const auto file = open_register(database_);
@@ -172,7 +182,7 @@ void RegisteredExport::keep_own() {
 }
 
 RegisteredExport::~RegisteredExport() {
-  if (named_) return;
+  if (named_ || service_of(database_)) return;
   try {
     const auto file = open_register(database_);
     Transaction transaction(*file);
@@ -193,6 +203,10 @@ RegisteredExport::~RegisteredExport() {
 void RegisteredExport::will_be(const std::string& sha256) {
   own_.sha256 = sha256;
   keep_own();
+  if (service_of(database_)) {
+    named_ = true;
+    return;
+  }
   const auto file = open_register(database_);
   Transaction transaction(*file);
   const std::int64_t id = enter(*file, own_.kind, own_.path, own_.people);
@@ -205,6 +219,10 @@ void RegisteredExport::will_be(const std::string& sha256) {
 // finds the export at its path, or this function finds the withdrawal.
 void RegisteredExport::is_in_place() {
   base::sync_folder_of(own_.path);
+  if (service_of(database_)) {
+    forget_replaced(own_);
+    return;
+  }
   const auto file = open_register(database_);
   Transaction transaction(*file);
   Statement gone(*file, "SELECT participant FROM tombstone WHERE person = ?");
@@ -232,8 +250,8 @@ RegisteredFiles::RegisteredFiles(const StudyFile& study)
     : database_(study.path), people_(everybody(*open_study(study).database)) {}
 
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
-  std::set<std::string> people = everybody(*open_register(database_));
-  people.insert(people_.begin(), people_.end());
+  std::set<std::string> people = people_;
+  if (!service_of(database_)) people.merge(everybody(*open_register(database_)));
   base::NewFile file(path, base::Readers::Owner);
   RegisteredExport record(database_, kind, path, people, file.draft());
   file.write(bytes);
@@ -256,13 +274,14 @@ void RegisteredFiles::make_folder(const fs::path& folder) const {
     keep_own_export({.id = new_export_id(),
                      .host = this_host(),
                      .kind = export_rows::folder_kind,
-                     .database = fs::weakly_canonical(real_file(database_)),
+                     .database = place_of_study(database_),
                      .path = path,
                      .draft = {},
                      .sha256 = {},
                      .people = {}});
   } catch (const base::Error&) {  // a withdrawal then does not remove the empty folder
   }
+  if (service_of(database_)) return;
   const auto file = open_register(database_);
   Statement(*file,
             "INSERT OR IGNORE INTO export (kind, path, host, sha256, utc, tackled) VALUES (?,?,?,'',?,0)")

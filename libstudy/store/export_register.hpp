@@ -38,6 +38,7 @@ std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 /// export only if it is also in the register of this installation (own_exports.hpp). Each call writes the
 /// database briefly and upgrades an older schema. base::Error if the database cannot be written, because a
 /// withdrawal could then not find the export. An installation's register that cannot be written is no error.
+/// An export of a central database ("service:NAME") is entered in this installation's register alone.
 class RegisteredExport {
  public:
   /// draft: path to which the export is written before it is renamed to `path`; empty: a generated name.

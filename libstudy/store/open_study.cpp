@@ -1,6 +1,8 @@
 #include "libstudy/store/open_study.hpp"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 
 #include "libstudy/store/file/backups.hpp"
 #include "libstudy/store/file/beside.hpp"
@@ -114,9 +116,38 @@ std::unique_ptr<Connection> as_settled(Connection& database, const JournalConten
           database.string() + " --into NEW.db, which puts both together; --incomplete goes on without it");
 }
 
+/// The central databases that this process has read.
+struct CentralStudies {
+  std::mutex turn;
+  CentralReading read;
+  std::map<std::string, std::unique_ptr<Connection>> known;
+};
+
+CentralStudies& central_studies() {
+  static CentralStudies studies;
+  return studies;
+}
+
+OpenedStudy open_central_study(const std::string& service) {
+  CentralStudies& studies = central_studies();
+  const std::lock_guard guard(studies.turn);
+  if (!studies.read)
+    throw base::Error("service:" + service, "is a central database, which this program does not read",
+                      "read it with vip-study or vip-stats");
+  auto& known = studies.known[service];
+  if (!known) known = studies.read(service);
+  auto copy = std::make_unique<Connection>(known->path(), sqlite::Temporary{});
+  copy->copy_from(*known);
+  copy->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
+  return {std::move(copy), ""};
+}
+
 }  // namespace
 
+void read_central_with(CentralReading reading) { central_studies().read = std::move(reading); }
+
 OpenedStudy open_study(const StudyFile& study) {
+  if (const auto service = service_of(study.path)) return open_central_study(*service);
   const fs::path path = real_file(study.path);
   for (int round = 1;; ++round) {
     // Read the journal before the database: the database then has all rows that the journal marks as kept.

@@ -1,6 +1,7 @@
 #pragma once
 /// Opens a study for reading: every reader gets the data that a writer would get.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -28,7 +29,16 @@ struct OpenedStudy {
 /// a tombstone in the journal or in an unfinished withdrawal. A temporary copy also excludes gaze that is
 /// refused. In an incomplete study the same people and gaze are excluded; of the rows that only the journal
 /// has, it includes permission changes and consent answers.
+///
+/// The path "service:NAME" is the central database of a lab (service_of()). It is read once in a process, by
+/// the function of read_central_with(); each opening gets a temporary copy of what was read.
 OpenedStudy open_study(const StudyFile& study);
+
+/// Reads the study of the central database of a service into a temporary database.
+using CentralReading = std::function<std::unique_ptr<sqlite::Connection>(const std::string& service)>;
+/// Lets open_study() read central databases. A program calls it once with read_central_study()
+/// (libstudy/store/remote/central_study.hpp); without it "service:NAME" is an error.
+void read_central_with(CentralReading reading);
 
 /// OpenedStudy::lacking of a database; an incomplete database is no error.
 std::string lacking_of(const std::filesystem::path& database);

@@ -179,6 +179,7 @@ const Rooms rooms{
     {"libstudy/store/merge", 6},
     {"libstudy/store/read", 6},
     {"libstudy/store/salvage", 6},
+    {"libstudy/store/remote", 7},
     {"libstudy/analysis", 7},
     {"libstudy/check", 7},
     {"libstudy/console", 7},

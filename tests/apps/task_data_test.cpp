@@ -7,7 +7,9 @@
 
 #include "libstudy/analysis/tasks/data_json.hpp"
 #include "libstudy/analysis/tasks/sensitivity.hpp"
+#include "libstudy/analysis/tasks/station_timing.hpp"
 #include "libstudy/analysis/tasks/task1_results.hpp"
+#include "libstudy/report/sections.hpp"
 #include "tests/apps/made_task_study.hpp"
 
 namespace apps {
@@ -162,6 +164,37 @@ TEST(TaskData, TimingTellsWhatTheSolverWentByWhereItWasMeasured) {
     }
   }
   EXPECT_TRUE(found);
+}
+
+TEST(TaskData, TimingOfEachStationWhereSeveralRecorded) {
+  auto protocol = made_study::task1(12);
+  EXPECT_THAT(study::station_timing_json(select(of(protocol))), IsEmpty()) << "one station";
+  for (std::size_t i = 0; i < 12; ++i) protocol.sessions[i].station = i < 9 ? "north" : "south";
+  auto& slow = protocol.sessions[10].trials[4].first;
+  slow.verdict = study::Verdict::Degraded;
+  slow.grade = study::TimingGrade::Photodiode;
+  slow.realised = {890, 29.5, 32, 9.5};
+  slow.longest_ms = 350;
+  slow.late = 7;
+  const study::Json stations = study::station_timing_json(select(of(protocol)));
+  ASSERT_THAT(stations, SizeIs(2));
+  EXPECT_EQ(stations[0].at("station"), "north");
+  EXPECT_EQ(stations[0].at("showings"), 90);
+  EXPECT_EQ(stations[0].at("pass"), 90);
+  EXPECT_NEAR(stations[0].at("mean_error_fps").get<double>(), 0.01, 1e-9);
+  EXPECT_NEAR(stations[0].at("sd_error_worst_fps").get<double>(), 0.01, 1e-9);
+  EXPECT_EQ(stations[1].at("showings"), 30);
+  EXPECT_EQ(stations[1].at("degraded"), 1);
+  EXPECT_EQ(stations[1].at("grades"), (study::Json{{"A", 1}, {"D", 29}}));
+  EXPECT_NEAR(stations[1].at("mean_error_fps").get<double>(), (29 * 0.01 + 0.5) / 30, 1e-9);
+  EXPECT_NEAR(stations[1].at("mean_error_worst_fps").get<double>(), 0.5, 1e-9);
+  EXPECT_EQ(stations[1].at("late_frames"), 7);
+  EXPECT_EQ(stations[1].at("longest_ms"), 350);
+  const study::Json root{{"timing_stations", stations}};
+  const std::string table = study::report::station_timing(study::report::Field(root), "task1", "Task 1");
+  EXPECT_THAT(table, HasSubstr("<th scope=\"col\">south</th>")) << "a column for each station";
+  EXPECT_THAT(table, HasSubstr("350.0"));
+  EXPECT_THAT(study::report::station_timing(study::report::Field(root), "task2", ""), IsEmpty());
 }
 
 TEST(TaskData, NoRuleSeesMethodsOrScenes) {

@@ -199,7 +199,9 @@ std::string remake_sql(const Groups& groups) {
     sql += rights_sql(one.name, stays ? "SELECT, INSERT" : "SELECT, INSERT, DELETE", groups);
   }
   sql += rights_sql("part", "SELECT, INSERT, DELETE", groups);
-  std::string own = base::read_file(base::resource("libstudy/store/sql/central.sql"), most_sql_bytes);
+  std::string own;
+  for (const char* file : {"central.sql", "central_slots.sql"})
+    own += base::read_file(base::resource(std::string("libstudy/store/sql/") + file), most_sql_bytes);
   replace_all(own, "{bury}", bury_sql());
   replace_all(own, "{station}", pg::quoted_name(groups.station));
   sql += own;

@@ -18,9 +18,9 @@ using sqlite::Statement;
 
 namespace {
 
-// Tables that never leave a station: registers of its own exports, work that it has to do, and events without
-// a session, which belong to no table here.
-const std::set<std::string> local_tables{"export", "export_person", "chore"};
+// Tables that never leave a station: registers of its own exports, work that it has to do, slots that the
+// centre reserved for it, and events without a session, which belong to no table here.
+const std::set<std::string> local_tables{"export", "export_person", "chore", "reserved_slot"};
 const std::map<std::string, Scope> roots{{"session", Scope::Session},
                                          {"protocol", Scope::Protocol},
                                          {"run", Scope::Run},

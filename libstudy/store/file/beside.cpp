@@ -1,5 +1,7 @@
 #include "libstudy/store/file/beside.hpp"
 
+#include "stats/base/error.hpp"
+
 namespace study {
 
 namespace fs = std::filesystem;
@@ -16,6 +18,18 @@ fs::path real_file(const fs::path& path) {
     file = to.is_absolute() ? to : file.parent_path() / to;
   }
   return file;
+}
+
+std::optional<std::string> service_of(const fs::path& path) {
+  constexpr std::string_view mark = "service:";
+  if (!path.native().starts_with(mark)) return {};
+  return path.native().substr(mark.size());
+}
+
+void refuse_service(const fs::path& path) {
+  if (!service_of(path)) return;
+  throw base::Error(path.string(), "is a central database, which this command does not write",
+                    "name the database of a station; vip-study push sends it to the central database");
 }
 
 fs::path beside(const fs::path& database, const std::string& suffix) {

@@ -341,6 +341,7 @@ std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const
 
 std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const SchemaSteps& steps,
                                           std::int64_t max_pages, const sqlite::Waiting& waiting) {
+  refuse_service(given);
   const fs::path path = real_file(given);
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);

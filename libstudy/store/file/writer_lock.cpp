@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "libstudy/store/file/beside.hpp"
 #include "libstudy/store/file/foreign_log.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -68,6 +69,7 @@ bool leads_to(const fs::path& path, int fd) {
 }  // namespace
 
 WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(database) {
+  refuse_service(path_);
   if (how == sqlite::Open::Create) {
     base::make_folder_of(path_);
     refuse_orphaned_log(path_);
