@@ -20,14 +20,15 @@ SlotRequest six_slots(int wanted) { return {"", protocol_hash, 6, wanted, false}
 
 TEST(CentralSlots, AreDealtFromBelowAndTheSameForOneToken) {
   test::CentralWorld world("slots_dealt");
-  const auto north = connect_slots(world.station("north")), south = connect_slots(world.station("south"));
+  const std::string south_role = world.station("south");
+  const auto north = connect_slots(world.station("north")), south = connect_slots(south_role);
   EXPECT_THAT(north->reserve(token_a, six_slots(4)), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(south->reserve(token_b, six_slots(9)), ElementsAre(4, 5, 0, 1, 2, 3, 4, 5, 0));
   EXPECT_THAT(north->reserve(token_a, six_slots(4)), ElementsAre(0, 1, 2, 3));
   north->give_back(token_a, {1, 3});
   north->give_back(token_a, {1, 3});
   EXPECT_THAT(north->reserve(std::string(32, 'c'), six_slots(3)), ElementsAre(1, 3, 1));
-  EXPECT_EQ(world.sql("SELECT vip.release_station('slots_dealt_south')"), "9");
+  EXPECT_EQ(world.sql("SELECT vip.release_station('" + south_role + "')"), "9");
   EXPECT_EQ(world.sql("SELECT count(*) FROM vip.open_reservation"), "5");
 }
 

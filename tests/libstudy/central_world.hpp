@@ -13,16 +13,16 @@ namespace study::test {
 
 using namespace ::test;
 
-/// A new central database. Roles and services begin with its name.
+/// A new central database. Roles and services begin with its name, which is `name` and a number.
 class CentralWorld {
  public:
-  explicit CentralWorld(const std::string& name) : name_(name), groups_(name) {
+  explicit CentralWorld(const std::string& name) : name_(numbered(name)), groups_(name_) {
     auto& server = postgres_server();
-    server.sql("postgres", "CREATE DATABASE " + name);
+    server.sql("postgres", "CREATE DATABASE " + name_);
     for (const std::string& group : {groups_.station, groups_.lab_reader, groups_.shared_reader})
       server.sql("postgres", "CREATE ROLE " + group + " NOLOGIN");
-    server.add_service(name + "_owner", "postgres", name);
-    pg::Connection(name + "_owner").script(central::make_sql(groups_));
+    server.add_service(name_ + "_owner", "postgres", name_);
+    pg::Connection(name_ + "_owner").script(central::make_sql(groups_));
   }
 
   /// Makes a role and its service; returns the service.
@@ -34,6 +34,11 @@ class CentralWorld {
   std::string sql(const std::string& text) const { return postgres_server().sql(name_, text); }
 
  private:
+  static std::string numbered(const std::string& name) {
+    static int worlds = 0;
+    return name + std::to_string(++worlds);
+  }
+
   std::string role(const std::string& who, const std::string& group) {
     const std::string role = name_ + "_" + who;
     postgres_server().sql("postgres", "CREATE ROLE " + role + " LOGIN IN ROLE " + group);
