@@ -35,6 +35,12 @@ void add_headset_command(CLI::App& app);
 void add_markers_command(CLI::App& app);
 void add_light_command(CLI::App& app);
 void add_gaze_command(CLI::App& app);
+void add_central_command(CLI::App& app);
+void add_push_command(CLI::App& app);
+void add_pull_command(CLI::App& app);
+
+/// Adds a required option for the name of a service, through which PostgreSQL is reached.
+CLI::Option* add_service(CLI::App& command, const char* name, std::string& service, const char* what);
 
 /// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);

@@ -22,6 +22,9 @@ int main(int argc, char** argv) {
   apps::add_consent_command(*app);
   apps::add_withdraw_command(*app);
   apps::add_merge_command(*app);
+  apps::add_central_command(*app);
+  apps::add_push_command(*app);
+  apps::add_pull_command(*app);
   apps::add_import_command(*app);
   apps::add_salvage_command(*app);
   apps::add_slots_command(*app);

@@ -186,6 +186,7 @@ const Rooms rooms{
     {"libstudy/observer", 7},
     {"libstudy/pages", 7},
     {"libstudy/store/export", 7},
+    {"libstudy/store/push", 7},
     {"libstudy/analysis/ptpe", 8},
     {"libstudy/analysis/rivals", 8},
     {"libstudy/pages/gui", 8},

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <limits>
 #include <thread>
-#include <utility>
 
 #include "libstudy/store/central/postgres.hpp"
 #include "tests/common/postgres_server.hpp"
@@ -51,13 +50,7 @@ TEST(CentralPostgres, RowsComeBackBitForBit) {
                               {"8", study::pg::text_of(-std::numeric_limits<double>::infinity()), "\\N"},
                               {{}, study::pg::text_of(std::numeric_limits<double>::max()), "größer"},
                               {"9", {}, {}}};
-  std::size_t next = 0;
-  const auto fill = [&](Row& row) {
-    if (next == sent.size()) return false;
-    row = sent[next++];
-    return true;
-  };
-  EXPECT_EQ(central.copy_in("COPY public.t FROM STDIN", fill), 5);
+  EXPECT_EQ(central.insert("public.t", {{"n", "bigint"}, {"x", "double precision"}, {"words", "text"}}, sent), 5);
   EXPECT_GT(central.bytes_sent(), 40);
   std::vector<Row> got;
   central.copy_out("COPY public.t TO STDOUT", [&](const Row& row) { got.push_back(row); });
@@ -77,29 +70,17 @@ TEST(CentralPostgres, ErrorsNameTheServiceTheServersMessageAndARemedy) {
   EXPECT_THAT(insert("x"), HasSubstr("service errors: invalid input syntax for type bigint"));
   EXPECT_THAT(insert("-1"), HasSubstr("violates check constraint"));
   EXPECT_THAT(insert("-1"), HasSubstr("\n  mend: "));
-  bool done = false;
-  const auto word = [&](Row& row) {
-    row = {"word"};
-    return !std::exchange(done, true);
-  };
-  EXPECT_THAT(message_of([&] { central.copy_in("COPY public.t FROM STDIN", word); }),
-              HasSubstr("(COPY t, line 1, column n)"));
+  EXPECT_THAT(message_of([&] { central.insert("public.t", {{"n", "bigint"}}, {{"1"}, {"word"}}); }),
+              HasSubstr("invalid input syntax"));
   EXPECT_THAT(message_of([&] { central.run("SELECT $1::text", {std::string("a\0b", 3)}); }),
               HasSubstr("NUL byte"));
   EXPECT_EQ(central.run("SELECT count(*) FROM public.t").integer(0, 0), 0)
       << "the connection is of no more use";
 }
 
-TEST(CentralPostgres, ARolledBackCopyLeavesNothing) {
+TEST(CentralPostgres, ATransactionThatIsNotCommittedLeavesNothing) {
   Connection central(new_database("rolled"));
   central.script("CREATE TABLE public.t (n bigint)");
-  int next = 0;
-  const auto stop = [&](Row& row) {
-    if (next == 3) throw std::runtime_error("enough");
-    row = {std::to_string(next++)};
-    return true;
-  };
-  EXPECT_EQ(message_of([&] { central.copy_in("COPY public.t FROM STDIN", stop); }), "enough");
   {
     const Transaction transaction(central);
     central.run("INSERT INTO public.t VALUES (1)");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "libstudy/store/central/central_schema.hpp"
 #include "libstudy/store/central/postgres.hpp"
@@ -171,21 +172,25 @@ std::string table_sql(const Table& one) {
   return sql + ");\n";
 }
 
-std::string make_sql(const Groups& groups) {
-  std::string sql = "CREATE SCHEMA vip;\n" + own_tables_sql;
-  std::vector<const Table*> order;
-  for (const Table& one : tables()) order.push_back(&one);
-  // A table comes after those that it refers to.
-  for (std::set<std::string> made; !order.empty();) {
-    const auto next = std::find_if(order.begin(), order.end(), [&](const Table* one) {
+std::vector<const Table*> in_order() {
+  std::vector<const Table*> rest, order;
+  for (const Table& one : tables()) rest.push_back(&one);
+  for (std::set<std::string> made; !rest.empty();) {
+    const auto next = std::find_if(rest.begin(), rest.end(), [&](const Table* one) {
       return std::all_of(one->references.begin(), one->references.end(),
                          [&](const Reference& to) { return made.contains(to.table); });
     });
-    if (next == order.end()) throw std::logic_error("the tables refer to each other in a circle");
-    sql += table_sql(**next);
+    if (next == rest.end()) throw std::logic_error("the tables refer to each other in a circle");
     made.insert((*next)->name);
-    order.erase(next);
+    order.push_back(*next);
+    rest.erase(next);
   }
+  return order;
+}
+
+std::string make_sql(const Groups& groups) {
+  std::string sql = "CREATE SCHEMA vip;\n" + own_tables_sql;
+  for (const Table* one : in_order()) sql += table_sql(*one);
   sql += "CREATE INDEX session_of_person ON vip.session (person);\n";
   sql += "INSERT INTO vip.schema_version VALUES (" + std::to_string(schema_number()) + ");\n";
   return sql + remake_sql(groups);
@@ -198,7 +203,7 @@ std::string remake_sql(const Groups& groups) {
     const bool stays = one.name == "tombstone" || one.scope == Scope::Protocol || one.scope == Scope::Run;
     sql += rights_sql(one.name, stays ? "SELECT, INSERT" : "SELECT, INSERT, DELETE", groups);
   }
-  sql += rights_sql("part", "SELECT, INSERT, DELETE", groups);
+  sql += rights_sql("part", "SELECT, INSERT, UPDATE, DELETE", groups);
   std::string own;
   for (const char* file : {"central.sql", "central_slots.sql"})
     own += base::read_file(base::resource(std::string("libstudy/store/sql/") + file), most_sql_bytes);

@@ -97,7 +97,7 @@ Scope scope_of(const LocalTables& tables, const std::string& name) {
 
 std::string central_type(const std::string& place, const std::string& type) {
   static const std::map<std::string, std::string> types{
-      {"INTEGER", "bigint"}, {"REAL", "double precision"}, {"TEXT", "text"}, {"BLOB", "bytea"}};
+      {"INTEGER", "bigint"}, {"REAL", "double precision"}, {"TEXT", "text"}};
   const auto found = types.find(type);
   if (found == types.end()) refuse_central(place, "has the type " + type);
   return found->second;

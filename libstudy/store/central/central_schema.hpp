@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace study::central {
@@ -66,6 +67,8 @@ struct Table {
 /// type, or an expression of a CHECK.
 const std::vector<Table>& tables();
 const Table& table(const std::string& name);
+/// The same tables, each after those that it refers to.
+std::vector<const Table*> in_order();
 
 /// The schema number of this program, which the central database must have too.
 std::int64_t schema_number();

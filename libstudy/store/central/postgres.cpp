@@ -27,7 +27,6 @@ using std::chrono::steady_clock;
 constexpr int usual_connect_timeout_s = 10;
 // A cut network is noticed after about this long, both while waiting for an answer and while sending.
 constexpr unsigned usual_silence_ms = 30000;
-constexpr std::size_t copy_buffer_bytes = 1 << 16;
 constexpr std::size_t longest_message = 400;
 
 /// A message of libpq as one line.
@@ -114,34 +113,23 @@ std::string mend_of(const std::string& sqlstate, bool lost) {
   return "see the log of the server";
 }
 
-/// A row as a line of COPY's text format.
-void append_line(const Row& row, std::string& out) {
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (i > 0) out += '\t';
-    if (!row[i]) {
-      out += "\\N";
+/// One column of rows as the text of an array.
+std::string array_of(const std::vector<Row>& rows, std::size_t column) {
+  std::string out = "{";
+  for (const Row& row : rows) {
+    if (out.size() > 1) out += ',';
+    if (!row.at(column)) {
+      out += "NULL";
       continue;
     }
-    for (const char c : *row[i]) {
-      switch (c) {
-        case '\\':
-          out += "\\\\";
-          break;
-        case '\n':
-          out += "\\n";
-          break;
-        case '\r':
-          out += "\\r";
-          break;
-        case '\t':
-          out += "\\t";
-          break;
-        default:
-          out += c;
-      }
+    out += '"';
+    for (const char c : *row[column]) {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
     }
+    out += '"';
   }
-  out += '\n';
+  return out + "}";
 }
 
 char unescaped(char c) {
@@ -250,14 +238,12 @@ Connection::Answer Connection::check(Answer answer) const {
   if (!result) fail();
   const auto status = PQresultStatus(result);
   if (status != PGRES_FATAL_ERROR && status != PGRES_BAD_RESPONSE) return answer;
-  const std::string state = field(result, PG_DIAG_SQLSTATE), context = field(result, PG_DIAG_CONTEXT);
+  const std::string state = field(result, PG_DIAG_SQLSTATE);
   // The status of the connection can still be good: libpq sees the end at its next statement. Then no state
   // came from the server, or 57P0x, with which it ends a session.
   const bool lost = PQstatus(link_->handle) == CONNECTION_BAD || state.empty() || state.starts_with("57P0");
   std::string problem = field(result, PG_DIAG_MESSAGE_PRIMARY);
   if (problem.empty()) problem = one_line(PQresultErrorMessage(result));
-  // The place in a COPY: "COPY frame, line 3, column late". It may go on with the value, which is left out.
-  if (context.starts_with("COPY ")) problem += " (" + context.substr(0, context.find_first_of(":\n")) + ")";
   throw Failure(service_, one_line(problem), mend_of(state, lost), state, lost);
 }
 
@@ -269,6 +255,7 @@ Rows Connection::run(const std::string& sql, const std::vector<Field>& values) {
                     mend_of("22021", false), "22021", false);
     }
     texts.push_back(value ? value->c_str() : nullptr);
+    if (value) bytes_sent_ += static_cast<std::int64_t>(value->size());
   }
   const Answer answer = check(Answer(PQexecParams(link_->handle, sql.c_str(), static_cast<int>(texts.size()),
                                                   nullptr, texts.data(), nullptr, nullptr, 0)));
@@ -288,32 +275,18 @@ Rows Connection::run(const std::string& sql, const std::vector<Field>& values) {
 
 void Connection::script(const std::string& sql) { check(Answer(PQexec(link_->handle, sql.c_str()))); }
 
-std::int64_t Connection::copy_in(const std::string& sql, const std::function<bool(Row&)>& next) {
-  check(Answer(PQexec(link_->handle, sql.c_str())));
-  std::int64_t rows = 0;
-  std::string buffer;
-  Row row;
-  const auto send = [&] {
-    if (PQputCopyData(link_->handle, buffer.data(), static_cast<int>(buffer.size())) != 1) fail();
-    bytes_sent_ += static_cast<std::int64_t>(buffer.size());
-    buffer.clear();
-  };
-  try {
-    for (; next(row); ++rows) {
-      append_line(row, buffer);
-      if (buffer.size() > copy_buffer_bytes) send();
-    }
-    if (!buffer.empty()) send();
-  } catch (...) {
-    PQputCopyEnd(link_->handle, "the client stopped");
-    while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
-    throw;
+std::int64_t Connection::insert(const std::string& table, const std::vector<ColumnType>& columns,
+                                const std::vector<Row>& rows, const std::string& tail) {
+  if (rows.empty()) return 0;
+  std::string names, arrays;
+  std::vector<Field> values;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    names += (i ? ", " : "") + quoted_name(columns[i].name);
+    arrays += (i ? ", $" : "$") + std::to_string(i + 1) + "::" + columns[i].type + "[]";
+    values.emplace_back(array_of(rows, i));
   }
-  if (PQputCopyEnd(link_->handle, nullptr) != 1) fail();
-  Answer answer(PQgetResult(link_->handle));
-  while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
-  check(std::move(answer));
-  return rows;
+  return run("INSERT INTO " + table + " (" + names + ") SELECT * FROM unnest(" + arrays + ") " + tail, values)
+      .changed();
 }
 
 void Connection::copy_out(const std::string& sql, const std::function<void(const Row&)>& take) {
@@ -373,6 +346,35 @@ const std::string& Rows::text(int row, int column) const {
 }
 
 std::int64_t Rows::integer(int row, int column) const { return std::stoll(text(row, column)); }
+
+void append_line(const Row& row, std::string& out) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) out += '\t';
+    if (!row[i]) {
+      out += "\\N";
+      continue;
+    }
+    for (const char c : *row[i]) {
+      switch (c) {
+        case '\\':
+          out += "\\\\";
+          break;
+        case '\n':
+          out += "\\n";
+          break;
+        case '\r':
+          out += "\\r";
+          break;
+        case '\t':
+          out += "\\t";
+          break;
+        default:
+          out += c;
+      }
+    }
+  }
+  out += '\n';
+}
 
 std::string text_of(std::int64_t value) { return std::to_string(value); }
 

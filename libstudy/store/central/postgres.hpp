@@ -30,6 +30,14 @@ using Row = std::vector<Field>;
 std::string text_of(std::int64_t value);
 std::string text_of(double value);
 
+/// `row` as a line of COPY's text format, at the end of `out`: a text for digests that no other row gives.
+void append_line(const Row& row, std::string& out);
+
+/// A column of Connection::insert().
+struct ColumnType {
+  std::string name, type;
+};
+
 /// Why a statement or a connection failed.
 class Failure : public base::Error {
  public:
@@ -83,15 +91,17 @@ class Connection {
   Rows run(const std::string& sql, const std::vector<Field>& values = {});
   /// Runs several statements without parameters, in one transaction unless they hold BEGIN or COMMIT.
   void script(const std::string& sql);
-  /// Runs "COPY ... FROM STDIN": sends rows until `next` returns false, which fills the row otherwise.
-  /// Returns the number of rows. If `next` throws, the server keeps none of the rows.
-  std::int64_t copy_in(const std::string& sql, const std::function<bool(Row&)>& next);
+  /// Inserts rows in one statement, a row's values in the order of `columns`. `table` stands in the SQL as it
+  /// is; tail: SQL after the rows, such as ON CONFLICT DO NOTHING. Returns the number of rows inserted. Rows
+  /// travel as one array for each column, because COPY does not serve tables with row level security.
+  std::int64_t insert(const std::string& table, const std::vector<ColumnType>& columns,
+                      const std::vector<Row>& rows, const std::string& tail = "");
   /// Runs "COPY ... TO STDOUT": calls `take` for each row. If `take` throws, the connection ends.
   void copy_out(const std::string& sql, const std::function<void(const Row&)>& take);
   /// Asks the server to end the statement that another thread waits for, which then fails with sqlstate
   /// 57014. The only function that another thread may call.
   void cancel() const;
-  /// Bytes of rows that copy_in() sent since the connection was made.
+  /// Bytes of values that run() and insert() sent since the connection was made.
   std::int64_t bytes_sent() const { return bytes_sent_; }
 
  private:
