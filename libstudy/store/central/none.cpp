@@ -1,13 +1,20 @@
-/// The central database without libpq: its functions end with an error.
-#include "libstudy/store/central/postgres.hpp"
+/// The central database in a build without libpq: each function ends with an error.
+#include "libstudy/store/central/central_admin.hpp"
+#include "stats/base/error.hpp"
 
-namespace study::pg {
+namespace study::central {
 
-// Each function of the central database begins with a connection.
-Connection::Connection(const std::string& service) {
-  check_service_name(service);
-  throw base::Error("service " + service, "this build has no PostgreSQL (it found no libpq)",
+namespace {
+
+[[noreturn]] void refuse_without_libpq(const std::string& service) {
+  throw base::Error("service " + service, "this build cannot speak to PostgreSQL (it found no libpq)",
                     "install libpq-dev and build again");
 }
 
-}  // namespace study::pg
+}  // namespace
+
+void init(const std::string& service) { refuse_without_libpq(service); }
+Upgrade upgrade(const std::string& service) { refuse_without_libpq(service); }
+void admit(const std::string& service, const std::string&, Admission) { refuse_without_libpq(service); }
+
+}  // namespace study::central

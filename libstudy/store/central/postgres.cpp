@@ -7,9 +7,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -113,25 +111,6 @@ std::string mend_of(const std::string& sqlstate, bool lost) {
   return "see the log of the server";
 }
 
-/// One column of rows as the text of an array.
-std::string array_of(const std::vector<Row>& rows, std::size_t column) {
-  std::string out = "{";
-  for (const Row& row : rows) {
-    if (out.size() > 1) out += ',';
-    if (!row.at(column)) {
-      out += "NULL";
-      continue;
-    }
-    out += '"';
-    for (const char c : *row[column]) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c;
-    }
-    out += '"';
-  }
-  return out + "}";
-}
-
 char unescaped(char c) {
   switch (c) {
     case 'b':
@@ -215,19 +194,6 @@ Connection::Connection(const std::string& service) : service_(service), link_(st
 }
 
 Connection::~Connection() = default;
-
-void check_service_name(const std::string& service) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
-  };
-  if (!service.empty() && std::all_of(service.begin(), service.end(), plain)) return;
-  // The text is not shown, because it may contain a password.
-  throw base::Error(
-      "service", "is not a name of letters, digits, '.', '_' and '-'",
-      "give the name of a section of libpq's service file, ~/.pg_service.conf, which holds host and "
-      "database; passwords belong in ~/.pgpass");
-}
 
 void Connection::fail() const {
   throw Failure(service_, one_line(PQerrorMessage(link_->handle)), mend_of("", true), "", true);
@@ -346,56 +312,5 @@ const std::string& Rows::text(int row, int column) const {
 }
 
 std::int64_t Rows::integer(int row, int column) const { return std::stoll(text(row, column)); }
-
-void append_line(const Row& row, std::string& out) {
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (i > 0) out += '\t';
-    if (!row[i]) {
-      out += "\\N";
-      continue;
-    }
-    for (const char c : *row[i]) {
-      switch (c) {
-        case '\\':
-          out += "\\\\";
-          break;
-        case '\n':
-          out += "\\n";
-          break;
-        case '\r':
-          out += "\\r";
-          break;
-        case '\t':
-          out += "\\t";
-          break;
-        default:
-          out += c;
-      }
-    }
-  }
-  out += '\n';
-}
-
-std::string text_of(std::int64_t value) { return std::to_string(value); }
-
-std::string text_of(double value) {
-  if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
-  if (std::isnan(value)) return "NaN";
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return {text, end.ptr};
-}
-
-std::string quoted_name(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string quoted_text(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 }  // namespace study::pg

@@ -33,6 +33,9 @@ std::string text_of(double value);
 /// `row` as a line of COPY's text format, at the end of `out`: a text for digests that no other row gives.
 void append_line(const Row& row, std::string& out);
 
+/// One column of rows as the text of an array, for a parameter such as $1::text[].
+std::string array_of(const std::vector<Row>& rows, std::size_t column);
+
 /// A column of Connection::insert().
 struct ColumnType {
   std::string name, type;

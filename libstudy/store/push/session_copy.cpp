@@ -68,6 +68,12 @@ TableRows read_rows(Connection& file, const Table& table, std::int64_t id, const
   return found;
 }
 
+std::int64_t count_rows(Connection& file, const Table& table, std::int64_t id) {
+  Statement row(file, "SELECT count(*) FROM \"" + table.name + "\" x WHERE " + table.rows);
+  row.bind_all(id).step();
+  return row.integer(0);
+}
+
 std::string digest_of(const std::vector<TableRows>& tables) {
   std::string text;
   for (const TableRows& one : tables) {

@@ -27,6 +27,8 @@ struct TableRows {
 /// protocol or run. uid: session.uid, for tables of a session.
 TableRows read_rows(sqlite::Connection& file, const central::Table& table, std::int64_t id = 0,
                     const std::string& uid = {});
+/// How many rows read_rows() gives.
+std::int64_t count_rows(sqlite::Connection& file, const central::Table& table, std::int64_t id);
 std::string digest_of(const std::vector<TableRows>& tables);
 /// The place of a column in the rows of a table.
 std::size_t place_of(const central::Table& table, const std::string& column);
