@@ -1,13 +1,16 @@
 /// vip-stats: analyses a database; writes results, verdicts on hypotheses and the file of fitted constants
 /// that the solver reads.
 
+#include <cstdio>
+
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"
-#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/remote/central_study.hpp"
+#include "stats/base/streams.hpp"
 
 int main(int argc, char** argv) {
-  study::read_central_with(study::read_central_study);
+  study::read_central_studies(
+      [](const std::string& line) { std::fprintf(stderr, "%s\n", base::for_terminal(line).c_str()); });
   const auto app = apps::new_program("Statistics of ViP-Lab studies", "vip-stats");
   apps::add_fit_ptpe_command(*app);
   apps::add_fit_people_command(*app);

@@ -50,8 +50,9 @@ void add_marker_pulse(CLI::App& command, CLI::Option* receiver, study::MarkerPul
 std::string gaze_source_problem(const std::string& text);
 /// Adds --gaze-turn, the fixed rotation of an outside eye tracker's rays (study::rotation_of()).
 void add_gaze_turn(CLI::App& command, std::array<double, 3>& turn_deg);
-/// Empty for a name of libpq's service file; otherwise base::Error (study::pg::check_service_name()).
-std::string service_name_problem(const std::string& name);
+/// After a push: returns slots that sessions gave up to the central database, and prints how many. Prints why
+/// not if the database is in use; the next push does it then.
+void return_slots_after_push(const std::string& database, const std::string& service);
 /// Says on the standard error if gaze from an outside eye tracker crosses a network.
 void tell_of_network(const std::string& gaze);
 

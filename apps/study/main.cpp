@@ -1,10 +1,13 @@
+#include <cstdio>
+
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
-#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/remote/central_study.hpp"
+#include "stats/base/streams.hpp"
 
 int main(int argc, char** argv) {
-  study::read_central_with(study::read_central_study);
+  study::read_central_studies(
+      [](const std::string& line) { std::fprintf(stderr, "%s\n", base::for_terminal(line).c_str()); });
   const auto app = apps::new_program("Studies of people's perception of real-time fluid", "vip-study");
   apps::add_check_command(*app);
   apps::add_headset_command(*app);

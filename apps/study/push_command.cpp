@@ -40,6 +40,7 @@ void push(const PushCommand& command) {
   if (done.withdrawn > 0)
     std::printf("%lld sessions left out: their people withdrew; vip-study pull withdraws them here\n",
                 count(done.withdrawn));
+  return_slots_after_push(command.database, command.service);
   print_list("Not taken:", done.refused);
   if (!done.refused.empty()) {
     throw base::Error(

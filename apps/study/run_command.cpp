@@ -16,6 +16,7 @@
 #include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/session/session.hpp"
+#include "libstudy/store/central/postgres.hpp"
 #include "libstudy/store/remote/slot_server.hpp"
 #include "libstudy/trackers/eye_tracker.hpp"
 #include "stats/base/error.hpp"
@@ -230,6 +231,7 @@ Played play_planned(const RunCommand& command, const study::Protocol& protocol,
 }
 
 void run(RunCommand& command) {
+  if (!command.slots_from.empty()) study::pg::check_service_name(command.slots_from);
   const study::Protocol protocol = read_checked_protocol(command);
   for (const std::string& scale : study::scales_beyond(command.run.observer, protocol))
     std::fprintf(stderr, "warning: %s: the observer gives the nearest score there\n", scale.c_str());
@@ -353,7 +355,7 @@ void add_run_command(CLI::App& app) {
   sub.add_option("--slots-from", command->slots_from,
                  "Take slots of the assignment from a central database, named by its section in libpq's "
                  "service file; while it cannot be reached, from those of vip-study slots reserve")
-      ->check(&service_name_problem);
+      ->type_name("SERVICE");
   add_viewing(sub, command->run.screen_width_mm, command->run.viewing_distance_mm,
               "Width of the participant's picture on the screen: with the distance it gives visual angles");
   add_size(sub, command->size,

@@ -10,8 +10,9 @@
 #include "apps/study/commands.hpp"
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
-#include "libstudy/store/central/postgres.hpp"
 #include "libstudy/store/remote/slot_server.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/streams.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -70,18 +71,19 @@ void list_slots(const SlotsCommand& command) {
   if (slots.empty()) std::printf("%s: no slots were reserved\n", command.database.c_str());
 }
 
-CLI::Option* add_service(CLI::App& command, std::string& service) {
-  return command
-      .add_option("--from", service, "Central database, named by its section in libpq's service file")
-      ->required()
-      ->check(&service_name_problem);
-}
-
 }  // namespace
 
-std::string service_name_problem(const std::string& name) {
-  study::pg::check_service_name(name);
-  return "";
+void return_slots_after_push(const std::string& database, const std::string& service) {
+  if (!study::needs_settling(study::read_reserved_slots(database), service)) return;
+  try {
+    study::Store store(database, study::sqlite::Open::Write);
+    const auto done = study::settle_slots(store, *study::connect_slots(service), service);
+    if (done.returned > 0) std::printf("%d slots returned that sessions gave up\n", done.returned);
+    store.require_journal();
+  } catch (const base::Error& error) {
+    std::fprintf(stderr, "slots are returned at a later push: %s\n",
+                 base::for_terminal(error.what()).c_str());
+  }
 }
 
 void add_slots_command(CLI::App& app) {
@@ -101,11 +103,11 @@ void add_slots_command(CLI::App& app) {
                   "Protocol file, or the name of one that comes with the program, such as task1")
       ->required();
   add_database(reserve, command->database)->check(output_file());
-  add_service(reserve, command->service);
+  add_service(reserve, "--from", command->service, "Service of the central database");
   reserve.callback([command] { reserve_slots(*command); });
   CLI::App& back = *sub.add_subcommand("return", "Return the reserved slots that no session has");
   add_database(back, command->database);
-  add_service(back, command->service);
+  add_service(back, "--from", command->service, "Service of the central database");
   back.callback([command] { return_slots(*command); });
 }
 

@@ -97,6 +97,11 @@ bool holds_withdrawn(sqlite::Connection& database);
 /// installation, changed, or not deletable. A missing export is listed once, since it may have been moved.
 void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 
+/// For a study that was read from a central database: deletes every unchanged export that this installation
+/// made from it and that contains a person who withdrew. Lists in done.left such exports that it cannot
+/// delete, and exports with a person who is not in the study any more.
+void delete_exports_of_service(sqlite::Connection& study, CleanUp& done);
+
 /// Functions on rows of the table `export`, used by the register and by the deletion of exports.
 namespace export_rows {
 

@@ -202,4 +202,56 @@ void delete_exports_of_withdrawn(Connection& database, CleanUp& done) {
   remove_empty_folders(database);
 }
 
+namespace {
+
+/// Deletes an export with a person who withdrew; returns why not.
+std::string remove_of_service(const OwnExport& one) {
+  if (!fs::exists(fs::symlink_status(one.path))) {
+    settle_gone({one});
+    return "";
+  }
+  if (!stands_unchanged(one)) {
+    const auto others = own_exports_at(one.path);
+    if (std::any_of(others.begin(), others.end(), stands_unchanged)) {  // a later export replaced it
+      forget({one});
+      return "";
+    }
+    return "holds a person who withdrew, and is not as it was written\n  mend: delete it by hand";
+  }
+  will_delete_own_export(one);
+  remove_whole(one);
+  forget({one});
+  has_deleted_own_export(one);
+  return "";
+}
+
+}  // namespace
+
+void delete_exports_of_service(Connection& study, CleanUp& done) {
+  const std::set<std::string> present = everybody(study);
+  for (const OwnExport& one : own_exports_of(study.path())) {
+    std::string problem;
+    try {
+      if (anyone_withdrew(study, one)) {
+        const bool there = fs::exists(one.path);
+        problem = remove_of_service(one);
+        if (there && !fs::exists(one.path)) done.cleaned.push_back(one.path);
+      } else if (fs::exists(one.path) &&
+                 !std::includes(present.begin(), present.end(), one.people.begin(), one.people.end())) {
+        problem = "holds a person whom " + study.path().string() +
+                  " does not show any more\n  mend: delete it, and export again";
+      }
+    } catch (const std::exception& error) {
+      problem = std::string("cannot be deleted: ") + error.what() + "\n  mend: delete it by hand";
+    }
+    if (!problem.empty())
+      done.left.push_back("export " + base::shortened(one.path.string(), longest_path) + " (" +
+                          base::shortened(one.kind) + ") " + problem);
+  }
+  if (done.cleaned.empty()) return;
+  for (const OwnExport& one : own_exports_of(study.path())) {
+    if (one.kind == export_rows::folder_kind && ::rmdir(one.path.c_str()) == 0) forget({one});
+  }
+}
+
 }  // namespace study

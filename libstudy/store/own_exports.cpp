@@ -136,6 +136,14 @@ std::vector<OwnExport> own_exports_at(const fs::path& path) {
   return found;
 }
 
+std::vector<OwnExport> own_exports_of(const fs::path& database) {
+  std::vector<OwnExport> found = read_all(own_exports_file());
+  std::erase_if(found, [&](const OwnExport& made) {
+    return made.host != this_host() || made.database != database || made.deleted;
+  });
+  return found;
+}
+
 void keep_own_export(const OwnExport& made) {
   change([&](std::vector<OwnExport>& all) {
     std::erase_if(all, [&](const OwnExport& other) { return other.id == made.id; });

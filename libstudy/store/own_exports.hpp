@@ -37,6 +37,9 @@ std::optional<std::string> why_not_registered();
 /// The exports registered at a path of this computer, newest last. Ignores lines of the register that cannot
 /// be parsed. base::Error if the register cannot be read, or if other users may write it.
 std::vector<OwnExport> own_exports_at(const std::filesystem::path& path);
+/// The exports of this computer that were made from a database, except those that are deleted. Throws as
+/// own_exports_at().
+std::vector<OwnExport> own_exports_of(const std::filesystem::path& database);
 /// Adds an export to the register, or replaces the export with the same id. base::Error if the register
 /// cannot be written.
 void keep_own_export(const OwnExport& made);

@@ -51,6 +51,9 @@ std::vector<ReservedSlot> reserved_slots_in(sqlite::Connection& database) {
 
 bool is_of(const ReservedSlot& one, const std::string& service) { return one.service == service; }
 
+/// True if a push returns the slot: no session has it, and none will take it while the network is away.
+bool gives_back(const ReservedSlot& one) { return one.is_free() && (!one.block || one.given_up); }
+
 bool is_for(const ReservedSlot& one, const SlotRequest& request) {
   return one.service == request.service && one.protocol_sha256 == request.protocol_sha256;
 }
@@ -185,13 +188,19 @@ std::vector<int> reserve_block(Store& store, SlotServer& server, const SlotReque
   return slots;
 }
 
+bool needs_settling(const std::vector<ReservedSlot>& slots, const std::string& service) {
+  return std::any_of(slots.begin(), slots.end(), [&](const ReservedSlot& one) {
+    if (!is_of(one, service) || one.state == SlotState::Returned) return false;
+    return one.state != SlotState::Held || gives_back(one);
+  });
+}
+
 SettledSlots settle_slots(Store& store, SlotServer& server, const std::string& service, bool all) {
   SettledSlots done;
   done.answered = repeat_requests(store, server, service);
   std::vector<ReservedSlot> free;
   for (ReservedSlot& one : store.reserved_slots()) {
-    if (is_of(one, service) && one.is_free() && (all || !one.block || one.given_up))
-      free.push_back(std::move(one));
+    if (is_of(one, service) && (gives_back(one) || (all && one.is_free()))) free.push_back(std::move(one));
   }
   if (!free.empty()) store.release_slots(free);
   std::map<std::string, std::vector<ReservedSlot>> returning;

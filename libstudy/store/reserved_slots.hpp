@@ -103,6 +103,9 @@ struct SettledSlots {
   int returned = 0;
 };
 
+/// True if settle_slots() has something to do for the service.
+bool needs_settling(const std::vector<ReservedSlot>& slots, const std::string& service);
+
 /// Sends requests of the service again whose answer did not come, and returns slots that are free because a
 /// session does not count any more, or because a run did not take what it asked for. all: also returns the
 /// free slots that were reserved in advance. Push the sessions first. Throws as SlotServer; what was done

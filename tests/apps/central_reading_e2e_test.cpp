@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libstudy/store/push/push.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/libstudy/central_world.hpp"
@@ -11,27 +12,12 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
-/// Text without the time at which it was made, and with the same name for both databases.
-std::string without_place(std::string text, const std::string& database) {
-  const auto replace_all = [&](const std::string& what, const std::string& by) {
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-      text.replace(at, what.size(), by);
-  };
-  replace_all(database, "DATABASE");
-  for (std::size_t at = text.find("\"date_utc\": \""); at != std::string::npos; at = std::string::npos) {
-    const std::string date = text.substr(at + 13, 20);
-    replace_all(date, "DATE");
-  }
-  return text;
-}
-
-class CentralReadingE2e : public ::testing::Test {
+class CentralPrograms : public ::testing::Test {
  protected:
-  CentralReadingE2e() : world_("reading_programs"), anna_(world_.reader("anna")) {
+  CentralPrograms() : world_("reading_programs") {
     base::write_file_atomically(protocol_,
                                 replaced(short_protocol("0.3"), "participants = 16", "participants = 4"));
   }
@@ -41,32 +27,72 @@ class CentralReadingE2e : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments);
   }
+  /// Two stations record with slots of the central database, and push; their files are merged, too.
+  void record_and_merge(int people) {
+    for (const std::string station : {"north", "south"}) {
+      const std::string service = station == "north" ? north_ : world_.station(station);
+      std::vector<std::string> codes{"--slots-from", service, "--participant", "P01"};
+      for (int i = 1; i < people; ++i) {
+        codes.emplace_back("--participant");
+        codes.push_back("Q" + std::to_string(i) + station);
+      }
+      const auto ended = record(station, codes);
+      ASSERT_EQ(ended.exit_code, 0) << ended.err;
+      study::push(file(station), service);
+    }
+    ASSERT_EQ(
+        run_program({vip_study, "merge", file("north"), file("south"), "--into", file("merged")}).exit_code,
+        0);
+  }
+  /// Expects equal files of both databases, but for the name of the database and the time of the report.
+  void expect_same(const std::string& suffix) const {
+    const auto text_of = [&](const std::string& name, const std::string& database) {
+      const std::string made = name + ".json";
+      return without(without(bytes(name + suffix), database),
+                     base::Json::parse(bytes(made)).at("date_utc").get<std::string>());
+    };
+    const std::string merged = text_of("merged", "merged.db"), central = text_of("central", central_);
+    EXPECT_EQ(central.size(), merged.size()) << suffix;
+    EXPECT_TRUE(central == merged) << suffix;
+  }
   std::string file(const std::string& station) const { return folder_ / (station + ".db"); }
   std::string bytes(const std::string& name) const { return base::read_file(folder_ / name, 1 << 26); }
+  static std::string without(std::string text, const std::string& part) {
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at))
+      text.erase(at, part.size());
+    return text;
+  }
 
   const TemporaryFolder folder_;
   const std::string protocol_ = folder_ / "short.toml";
   study::test::CentralWorld world_;
-  const std::string anna_;
+  const std::string north_ = world_.station("north"), central_ = "service:" + world_.reader("anna");
 };
 
-TEST_F(CentralReadingE2e, ReportsAndExportsEqualThoseOfTheMergedFiles) {
-  std::vector<std::string> files;
-  for (const char* station : {"north", "south"}) {
-    std::vector<std::string> people{"--participant", "P01"};
-    people.emplace_back("--participant");
-    people.push_back(std::string("Q-") + station);
-    const auto ended = record(station, people);
-    ASSERT_EQ(ended.exit_code, 0) << ended.err;
-    study::test::send_all(world_.station(station), file(station));
-    files.push_back(file(station));
-  }
-  const std::string merged = file("merged"), central = "service:" + anna_;
-  ASSERT_EQ(run_program({vip_study, "merge", files[0], files[1], "--into", merged}).exit_code, 0);
-  for (const auto& [name, database] : {std::pair{"merged", merged}, {"central", central}}) {
+using CentralReadingE2e = CentralPrograms;
+using CentralProgramsSlow = CentralPrograms;
+
+TEST_F(CentralReadingE2e, AReportEqualsThatOfTheMergedFiles) {
+  record_and_merge(1);
+  for (const auto& [name, database] : {std::pair{"merged", file("merged")}, {"central", central_}}) {
     const std::string out = folder_ / name;
-    const auto report = run_program({vip_stats, "report", database, "--json", out + ".json", "--html",
-                                     out + ".html", "--csv", out + "_csv"});
+    const auto report =
+        run_program({vip_stats, "report", database, "--json", out + ".json", "--html", out + ".html"});
+    ASSERT_EQ(report.exit_code, 0) << report.err;
+  }
+  expect_same(".json");
+  expect_same(".html");
+  EXPECT_THAT(bytes("merged.html"), HasSubstr("Timing by station"));
+  EXPECT_EQ(world_.sql("SELECT string_agg(slot::text, ' ' ORDER BY slot) FROM vip.slot_session"), "0 0")
+      << "the pilot has one slot";
+}
+
+TEST_F(CentralProgramsSlow, ExportsEqualThoseOfTheMergedFilesAndGoWithWhoWithdraws) {
+  record_and_merge(2);
+  for (const auto& [name, database] : {std::pair{"merged", file("merged")}, {"central", central_}}) {
+    const std::string out = folder_ / name;
+    const auto report =
+        run_program({vip_stats, "report", database, "--json", out + ".json", "--csv", out + "_csv"});
     ASSERT_EQ(report.exit_code, 0) << report.err;
     const auto status = run_program({vip_study, "status", "--db", database});
     ASSERT_EQ(status.exit_code, 0) << status.err;
@@ -75,44 +101,40 @@ TEST_F(CentralReadingE2e, ReportsAndExportsEqualThoseOfTheMergedFiles) {
         {vip_study, "export", "--db", database, "--csv", out + "_tables", "--psych-ds", out + "_psych"});
     ASSERT_EQ(exported.exit_code, 0) << exported.err;
   }
-  const std::string shown = "service:" + anna_;
-  const auto same = [&](const std::string& suffix) {
-    const std::string date_m = without_place(bytes("merged" + suffix), "merged.db");
-    const std::string date_c = without_place(bytes("central" + suffix), shown);
-    EXPECT_EQ(date_c.size(), date_m.size()) << suffix;
-    EXPECT_TRUE(date_c == date_m) << suffix;
-  };
   for (const char* suffix : {".json", "_status", "_csv/timing_stations.csv", "_tables/responses.csv",
                              "_tables/sessions.csv", "_tables/frames.csv"})
-    same(suffix);
-  const auto page = [&](const std::string& name, const std::string& database) {
-    std::string text = without_place(bytes(name + ".html"), database);
-    const std::string date = base::Json::parse(bytes(name + ".json")).at("date_utc").get<std::string>();
-    for (std::size_t at = text.find(date); at != std::string::npos; at = text.find(date))
-      text.erase(at, date.size());
-    return text;
-  };
-  EXPECT_TRUE(page("central", shown) == page("merged", "merged.db"));
-  EXPECT_THAT(bytes("merged.html"), HasSubstr("Timing by station"));
+    expect_same(suffix);
+
+  // A person withdraws at a station: the next command that reads the service deletes what holds the person.
+  ASSERT_EQ(run_program({vip_study, "withdraw", "P01", "--db", file("north"), "--yes"}).exit_code, 0);
+  study::push(file("north"), north_);
+  const auto after = run_program({vip_study, "status", "--db", central_});
+  EXPECT_EQ(after.exit_code, 0) << after.err;
+  EXPECT_THAT(after.err, HasSubstr("central.json: a person in it withdrew"));
+  for (const char* name : {"central.json", "central_csv", "central_tables", "central_psych"})
+    EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+  EXPECT_TRUE(fs::exists(folder_ / "merged.json"));
+  const auto copied = run_program({vip_study, "merge", central_, "--into", file("copied")});
+  EXPECT_EQ(copied.exit_code, 0) << copied.err;
+  EXPECT_EQ(count_in(file("copied"), "SELECT count(*) FROM session"), 3);
 }
 
-TEST_F(CentralReadingE2e, CommandsThatWriteRefuseAService) {
-  const std::string central = "service:" + anna_;
+TEST_F(CentralProgramsSlow, CommandsThatWriteRefuseAService) {
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{vip_study, "run", protocol_, "--observer", "random", "--db", central},
-        {vip_study, "resume", "--db", central},
-        {vip_study, "withdraw", "P01", "--db", central, "--yes"},
-        {vip_study, "consent", "P01", "--db", central, "--gaze", "no"},
-        {vip_study, "merge", file("north"), "--into", central},
-        {vip_study, "salvage", "--db", central, "--into", file("all")}}) {
+       {std::vector<std::string>{vip_study, "run", protocol_, "--observer", "random", "--db", central_},
+        {vip_study, "resume", "--db", central_},
+        {vip_study, "withdraw", "P01", "--db", central_, "--yes"},
+        {vip_study, "consent", "P01", "--db", central_, "--gaze", "no"},
+        {vip_study, "merge", file("north"), "--into", central_},
+        {vip_study, "salvage", "--db", central_, "--into", file("all")}}) {
     const auto ended = run_program(arguments);
     EXPECT_EQ(ended.exit_code, 1) << arguments[1] << ended.out;
-    EXPECT_THAT(ended.err, AllOf(HasSubstr(central), HasSubstr("mend: "))) << arguments[1];
+    EXPECT_THAT(ended.err, AllOf(HasSubstr(central_), HasSubstr("mend: "))) << arguments[1];
   }
   EXPECT_FALSE(fs::exists(file("all")));
 }
 
-TEST_F(CentralReadingE2e, SlotsComeFromTheServerAndOfflineFromTheBlock) {
+TEST_F(CentralProgramsSlow, SlotsComeFromTheServerAndOfflineFromTheBlock) {
   const std::string service = world_.station("west"), database = file("west");
   const auto reserved = run_program(
       {vip_study, "slots", "reserve", "2", "--protocol", protocol_, "--db", database, "--from", service});
@@ -137,7 +159,8 @@ TEST_F(CentralReadingE2e, SlotsComeFromTheServerAndOfflineFromTheBlock) {
   EXPECT_THAT(run_program({vip_study, "slots", "list", "--db", database}).out, HasSubstr("returned"));
   EXPECT_EQ(world_.sql("SELECT count(*) FROM vip.open_reservation"), "2")
       << "those of P01 and P02, not pushed yet";
-  study::test::send_all(service, database);
+  const auto pushed = run_program({vip_study, "push", "--db", database, "--to", service});
+  EXPECT_EQ(pushed.exit_code, 0) << pushed.err;
   EXPECT_EQ(world_.sql("SELECT count(*) FROM vip.open_reservation"), "0");
   EXPECT_THAT(record("east", {"--participant", "P05", "--slots-from", "host=x"}).err,
               HasSubstr("is not a name"));

@@ -50,7 +50,8 @@ TEST(CentralPostgres, RowsComeBackBitForBit) {
                               {"8", study::pg::text_of(-std::numeric_limits<double>::infinity()), "\\N"},
                               {{}, study::pg::text_of(std::numeric_limits<double>::max()), "größer"},
                               {"9", {}, {}}};
-  EXPECT_EQ(central.insert("public.t", {{"n", "bigint"}, {"x", "double precision"}, {"words", "text"}}, sent), 5);
+  EXPECT_EQ(central.insert("public.t", {{"n", "bigint"}, {"x", "double precision"}, {"words", "text"}}, sent),
+            5);
   EXPECT_GT(central.bytes_sent(), 40);
   std::vector<Row> got;
   central.copy_out("COPY public.t TO STDOUT", [&](const Row& row) { got.push_back(row); });
@@ -70,7 +71,9 @@ TEST(CentralPostgres, ErrorsNameTheServiceTheServersMessageAndARemedy) {
   EXPECT_THAT(insert("x"), HasSubstr("service errors: invalid input syntax for type bigint"));
   EXPECT_THAT(insert("-1"), HasSubstr("violates check constraint"));
   EXPECT_THAT(insert("-1"), HasSubstr("\n  mend: "));
-  EXPECT_THAT(message_of([&] { central.insert("public.t", {{"n", "bigint"}}, {{"1"}, {"word"}}); }),
+  EXPECT_THAT(message_of([&] {
+                central.insert("public.t", {{"n", "bigint"}}, {{"1"}, {"word"}});
+              }),
               HasSubstr("invalid input syntax"));
   EXPECT_THAT(message_of([&] { central.run("SELECT $1::text", {std::string("a\0b", 3)}); }),
               HasSubstr("NUL byte"));

@@ -183,7 +183,7 @@ class SlotHistory {
     std::string code;
     {
       sqlite::Connection database(path(station), sqlite::Open::Read);
-      code = database.text("SELECT participant FROM session ORDER BY uid LIMIT 1");
+      code = database.text("SELECT participant FROM session ORDER BY participant LIMIT 1");
     }
     if (!code.empty()) withdraw(path(station), code);
   }

@@ -9,9 +9,11 @@
 #include "libstudy/store/central/central_schema.hpp"
 #include "libstudy/store/central/postgres.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/export_register.hpp"
 #include "libstudy/store/file/database.hpp"
 #include "libstudy/store/file/schema.hpp"
 #include "libstudy/store/merge/merge_parts.hpp"
+#include "libstudy/store/open_study.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
@@ -187,7 +189,7 @@ class CentralReader {
   StationCopy& copy_of(const std::string& sender) {
     StationCopy& copy = copies_[sender];
     if (!copy.database) {
-      copy.database = make_temporary_database(shown_);
+      copy.database = make_temporary_database(shown_ + " (" + printable(sender) + ")");
       copy.database->execute("PRAGMA foreign_keys = OFF; BEGIN");
     }
     return copy;
@@ -296,6 +298,22 @@ std::unique_ptr<Connection> read_central_study(const std::string& service) {
   merging::write_union(content, chosen, names, *study);
   give_labels(*study);
   return study;
+}
+
+void read_central_studies(std::function<void(const std::string& line)> tell) {
+  read_central_with([tell = std::move(tell)](const std::string& service) {
+    auto study = read_central_study(service);
+    CleanUp done;
+    try {
+      delete_exports_of_service(*study, done);
+    } catch (const base::Error& error) {
+      done.left.emplace_back(error.what());
+    }
+    for (const auto& path : done.cleaned)
+      tell("deleted " + path.string() + ": a person in it withdrew; export again");
+    for (const std::string& line : done.left) tell(line);
+    return study;
+  });
 }
 
 }  // namespace study
