@@ -24,11 +24,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
-std::string new_database(const std::string& name) {
-  auto& server = test::postgres_server();
-  server.sql("postgres", "CREATE DATABASE " + name);
-  server.add_service(name, "postgres", name);
-  return name;
+/// A service of the administrator, for tables in its temporary schema.
+const std::string& admin() {
+  static const std::string service = [] {
+    test::postgres_server().add_service("plain", "postgres", "postgres");
+    return std::string("plain");
+  }();
+  return service;
 }
 
 template <class Work>
@@ -42,57 +44,58 @@ std::string message_of(const Work& work) {
 }
 
 TEST(CentralPostgres, RowsComeBackBitForBit) {
-  Connection central(new_database("bits"));
-  central.script("CREATE TABLE public.t (n bigint, x double precision, words text)");
+  Connection central(admin());
+  central.script("CREATE TEMP TABLE t (n bigint, x double precision, words text)");
   const std::vector<Row> sent{{study::pg::text_of(std::numeric_limits<std::int64_t>::min()),
                                study::pg::text_of(0.1), "a\tb\\N\n\r\\"},
                               {"7", study::pg::text_of(std::numeric_limits<double>::denorm_min()), ""},
                               {"8", study::pg::text_of(-std::numeric_limits<double>::infinity()), "\\N"},
                               {{}, study::pg::text_of(std::numeric_limits<double>::max()), "größer"},
                               {"9", {}, {}}};
-  EXPECT_EQ(central.insert("public.t", {{"n", "bigint"}, {"x", "double precision"}, {"words", "text"}}, sent),
-            5);
+  EXPECT_EQ(
+      central.insert("pg_temp.t", {{"n", "bigint"}, {"x", "double precision"}, {"words", "text"}}, sent), 5);
   EXPECT_GT(central.bytes_sent(), 40);
   std::vector<Row> got;
-  central.copy_out("COPY public.t TO STDOUT", [&](const Row& row) { got.push_back(row); });
+  central.copy_out("COPY pg_temp.t TO STDOUT", [&](const Row& row) { got.push_back(row); });
   EXPECT_EQ(got, sent);
-  const auto rows = central.run("SELECT words FROM public.t WHERE n = $1 OR x = $2 ORDER BY n", {"7", "0.1"});
+  const auto rows =
+      central.run("SELECT words FROM pg_temp.t WHERE n = $1 OR x = $2 ORDER BY n", {"7", "0.1"});
   ASSERT_EQ(rows.size(), 2);
   EXPECT_THAT(rows.at(0, 0), Optional(std::string("a\tb\\N\n\r\\")));
   EXPECT_EQ(rows.text(1, 0), "");
 }
 
 TEST(CentralPostgres, ErrorsNameTheServiceTheServersMessageAndARemedy) {
-  Connection central(new_database("errors"));
-  central.script("CREATE TABLE public.t (n bigint CHECK (n > 0))");
+  Connection central(admin());
+  central.script("CREATE TEMP TABLE t (n bigint CHECK (n > 0))");
   const auto insert = [&](const char* value) {
-    return message_of([&] { central.run("INSERT INTO public.t VALUES ($1)", {value}); });
+    return message_of([&] { central.run("INSERT INTO pg_temp.t VALUES ($1)", {value}); });
   };
-  EXPECT_THAT(insert("x"), HasSubstr("service errors: invalid input syntax for type bigint"));
+  EXPECT_THAT(insert("x"), HasSubstr("service plain: invalid input syntax for type bigint"));
   EXPECT_THAT(insert("-1"), HasSubstr("violates check constraint"));
   EXPECT_THAT(insert("-1"), HasSubstr("\n  mend: "));
   EXPECT_THAT(message_of([&] {
-                central.insert("public.t", {{"n", "bigint"}}, {{"1"}, {"word"}});
+                central.insert("pg_temp.t", {{"n", "bigint"}}, {{"1"}, {"word"}});
               }),
               HasSubstr("invalid input syntax"));
   EXPECT_THAT(message_of([&] { central.run("SELECT $1::text", {std::string("a\0b", 3)}); }),
               HasSubstr("NUL byte"));
-  EXPECT_EQ(central.run("SELECT count(*) FROM public.t").integer(0, 0), 0)
+  EXPECT_EQ(central.run("SELECT count(*) FROM pg_temp.t").integer(0, 0), 0)
       << "the connection is of no more use";
 }
 
 TEST(CentralPostgres, ATransactionThatIsNotCommittedLeavesNothing) {
-  Connection central(new_database("rolled"));
-  central.script("CREATE TABLE public.t (n bigint)");
+  Connection central(admin());
+  central.script("CREATE TEMP TABLE t (n bigint)");
   {
     const Transaction transaction(central);
-    central.run("INSERT INTO public.t VALUES (1)");
+    central.run("INSERT INTO pg_temp.t VALUES (1)");
   }
-  EXPECT_EQ(central.run("SELECT count(*) FROM public.t").integer(0, 0), 0);
+  EXPECT_EQ(central.run("SELECT count(*) FROM pg_temp.t").integer(0, 0), 0);
   Transaction transaction(central);
-  EXPECT_EQ(central.run("INSERT INTO public.t VALUES (1), (2)").changed(), 2);
+  EXPECT_EQ(central.run("INSERT INTO pg_temp.t VALUES (1), (2)").changed(), 2);
   transaction.commit();
-  EXPECT_EQ(central.run("SELECT count(*) FROM public.t").integer(0, 0), 2);
+  EXPECT_EQ(central.run("SELECT count(*) FROM pg_temp.t").integer(0, 0), 2);
 }
 
 TEST(CentralPostgres, OnlyNamesOfServicesAreTaken) {
@@ -107,10 +110,9 @@ TEST(CentralPostgres, OnlyNamesOfServicesAreTaken) {
 
 TEST(CentralPostgres, PasswordsComeFromThePasswordFile) {
   auto& server = test::postgres_server();
-  new_database("secrets");
   server.sql("postgres", "CREATE ROLE anna LOGIN PASSWORD 'open:sesame'");
   const auto file = server.folder() / "passwords";
-  server.add_service("over_tcp", "anna", "secrets", "host=127.0.0.1\npassfile=" + file.string());
+  server.add_service("over_tcp", "anna", "postgres", "host=127.0.0.1\npassfile=" + file.string());
   EXPECT_THAT(message_of([] { Connection central("over_tcp"); }), HasSubstr("service over_tcp: "));
   std::ofstream(file) << "127.0.0.1:*:*:anna:open\\:sesame\n";
   std::filesystem::permissions(file, std::filesystem::perms(0600));
@@ -119,7 +121,7 @@ TEST(CentralPostgres, PasswordsComeFromThePasswordFile) {
 }
 
 TEST(CentralPostgres, ALostServerIsToldFromARefusedRow) {
-  Connection central(new_database("lost"));
+  Connection central(admin());
   test::postgres_server().stop_immediately();
   try {
     central.run("SELECT 1");
@@ -127,9 +129,9 @@ TEST(CentralPostgres, ALostServerIsToldFromARefusedRow) {
   } catch (const Failure& failure) {
     EXPECT_TRUE(failure.lost());
   }
-  EXPECT_THAT(message_of([] { Connection again("lost"); }), HasSubstr("whether the server runs"));
+  EXPECT_THAT(message_of([] { Connection again(admin()); }), HasSubstr("whether the server runs"));
   test::postgres_server().start();
-  Connection again("lost");
+  Connection again(admin());
   try {
     again.run("SELECT 1 / 0");
     ADD_FAILURE() << "a division by zero gave a number";
@@ -140,9 +142,9 @@ TEST(CentralPostgres, ALostServerIsToldFromARefusedRow) {
 }
 
 TEST(CentralPostgres, AnotherThreadCancelsAStatement) {
-  Connection central(new_database("cancelled"));
+  Connection central(admin());
   std::thread other([&] {
-    Connection watch("cancelled");
+    Connection watch(admin());
     while (watch.run("SELECT 1 FROM pg_stat_activity WHERE query = 'SELECT pg_sleep(60)'").size() == 0)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     central.cancel();

@@ -112,7 +112,7 @@ class TableMaker {
     table_.name = local_.name;
     table_.scope = scope_;
     table_.large = is_large(local_);
-    if (scope_ == Scope::Session) add({"session_uid", "text", true, "session_id", "?2"});
+    if (scope_ == Scope::Session) add({"session_uid", "text", true, local_.name == "session" ? "uid" : "session_id", "?2"});
     for (const LocalColumn& column : local_.columns) add_column(column);
     add_keys();
     add_checks();

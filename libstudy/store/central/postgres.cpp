@@ -190,7 +190,7 @@ Connection::Connection(const std::string& service) : service_(service), link_(st
   // lets no other role's table or function stand in for a table of the program.
   script(
       "SET search_path = pg_catalog; SET standard_conforming_strings = on; SET extra_float_digits = 1; "
-      "SET DateStyle = ISO; SET client_min_messages = warning");
+      "SET DateStyle = ISO; SET client_min_messages = warning; SET jit = off");
 }
 
 Connection::~Connection() = default;
