@@ -2,10 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/push/push.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
-#include "tests/libstudy/central_world.hpp"
+#include "tests/libstudy/central_fixture.hpp"
 
 namespace apps::test {
 namespace {
@@ -17,11 +16,15 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
 class CentralPrograms : public ::testing::Test {
  protected:
-  CentralPrograms() : world_("reading_programs") {
+  CentralPrograms() : lab_(next_name()) {
     base::write_file_atomically(protocol_,
                                 replaced(short_protocol("0.3"), "participants = 16", "participants = 4"));
   }
 
+  static std::string next_name() {
+    static int made = 0;
+    return "programs" + std::to_string(++made);
+  }
   Ended record(const std::string& station, const std::vector<std::string>& more) {
     auto arguments = run_arguments(protocol_, file(station), {"--station", station, "--display", "none"});
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -30,7 +33,7 @@ class CentralPrograms : public ::testing::Test {
   /// Two stations record with slots of the central database, and push; their files are merged, too.
   void record_and_merge(int people) {
     for (const std::string station : {"north", "south"}) {
-      const std::string service = station == "north" ? north_ : world_.station(station);
+      const std::string service = station == "north" ? north_ : lab_.admit(station);
       std::vector<std::string> codes{"--slots-from", service, "--participant", "P01"};
       for (int i = 1; i < people; ++i) {
         codes.emplace_back("--participant");
@@ -65,8 +68,9 @@ class CentralPrograms : public ::testing::Test {
 
   const TemporaryFolder folder_;
   const std::string protocol_ = folder_ / "short.toml";
-  study::test::CentralWorld world_;
-  const std::string north_ = world_.station("north"), central_ = "service:" + world_.reader("anna");
+  study::test::Lab lab_;
+  const std::string north_ = lab_.admit("north"),
+                    central_ = "service:" + lab_.admit("anna", study::central::Admission::LabReader);
 };
 
 using CentralReadingE2e = CentralPrograms;
@@ -83,7 +87,7 @@ TEST_F(CentralReadingE2e, AReportEqualsThatOfTheMergedFiles) {
   expect_same(".json");
   expect_same(".html");
   EXPECT_THAT(bytes("merged.html"), HasSubstr("Timing by station"));
-  EXPECT_EQ(world_.sql("SELECT string_agg(slot::text, ' ' ORDER BY slot) FROM vip.slot_session"), "0 0")
+  EXPECT_EQ(lab_.ask("SELECT string_agg(slot::text, ' ' ORDER BY slot) FROM vip.slot_session").front(), "0 0")
       << "the pilot has one slot";
 }
 
@@ -135,7 +139,7 @@ TEST_F(CentralProgramsSlow, CommandsThatWriteRefuseAService) {
 }
 
 TEST_F(CentralProgramsSlow, SlotsComeFromTheServerAndOfflineFromTheBlock) {
-  const std::string service = world_.station("west"), database = file("west");
+  const std::string service = lab_.admit("west"), database = file("west");
   const auto reserved = run_program(
       {vip_study, "slots", "reserve", "2", "--protocol", protocol_, "--db", database, "--from", service});
   ASSERT_EQ(reserved.exit_code, 0) << reserved.err;
@@ -157,11 +161,11 @@ TEST_F(CentralProgramsSlow, SlotsComeFromTheServerAndOfflineFromTheBlock) {
   const auto back = run_program({vip_study, "slots", "return", "--db", database, "--from", service});
   EXPECT_EQ(back.exit_code, 0) << back.err;
   EXPECT_THAT(run_program({vip_study, "slots", "list", "--db", database}).out, HasSubstr("returned"));
-  EXPECT_EQ(world_.sql("SELECT count(*) FROM vip.open_reservation"), "2")
+  EXPECT_EQ(lab_.ask("SELECT count(*) FROM vip.open_reservation").front(), "2")
       << "those of P01 and P02, not pushed yet";
   const auto pushed = run_program({vip_study, "push", "--db", database, "--to", service});
   EXPECT_EQ(pushed.exit_code, 0) << pushed.err;
-  EXPECT_EQ(world_.sql("SELECT count(*) FROM vip.open_reservation"), "0");
+  EXPECT_EQ(lab_.ask("SELECT count(*) FROM vip.open_reservation").front(), "0");
   EXPECT_THAT(record("east", {"--participant", "P05", "--slots-from", "host=x"}).err,
               HasSubstr("is not a name"));
 }

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 
-#include "libstudy/store/central/central_schema.hpp"
-#include "libstudy/store/central/postgres.hpp"
 #include "libstudy/store/file/schema.hpp"
 #include "libstudy/store/merge/merge.hpp"
-#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/permissions.hpp"
-#include "libstudy/store/push/push.hpp"
 #include "libstudy/store/read/task_answers.hpp"
 #include "libstudy/store/remote/central_study.hpp"
 #include "libstudy/store/withdraw.hpp"
-#include "tests/libstudy/central_world.hpp"
+#include "tests/libstudy/central_fixture.hpp"
 #include "tests/libstudy/stored_content.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -69,15 +65,15 @@ void record(const fs::path& path, const std::string& station, const std::vector<
 /// Three stations with sessions under way, codes that several of them gave, somebody who withdrew, and
 /// somebody who does not share. Pushes their files in this order.
 struct Recorded {
-  explicit Recorded(const std::vector<std::size_t>& order) : world("reading") {
+  Recorded(const std::string& name, const std::vector<std::size_t>& order) : lab(name) {
     record(files[0], "north", {"P01", "P02"}, 2);
     record(files[1], "south", {"P02", "P03"}, 1);
     fs::copy_file(base::resource("tests/libstudy/fixtures/study_v8.db"), files[2]);
     withdraw(files[1], "P03");
     change_permissions(files[2], "P01", {.gaze = {}, .sharing = false});
-    for (const char* station : {"a", "b", "c"}) services.push_back(world.station(station));
+    for (const char* station : {"a", "b", "c"}) services.push_back(lab.admit(station));
     for (const std::size_t i : order) study::push(files.at(i), services.at(i));
-    lab_reader = world.reader("anna");
+    reader = lab.admit("anna", central::Admission::LabReader);
   }
   std::string merged() const {
     const fs::path into = folder / "merged.db";
@@ -87,32 +83,33 @@ struct Recorded {
   }
   test::TemporaryFolder folder;
   std::vector<fs::path> files{folder / "north.db", folder / "south.db", folder / "east.db"};
-  test::CentralWorld world;
+  test::Lab lab;
   std::vector<std::string> services;
-  std::string lab_reader;
+  std::string reader;
 };
 
 Recorded& recorded() {
-  static Recorded made({1, 2, 0});
+  static Recorded made("reading", {1, 2, 0});
   return made;
 }
 
 TEST(CentralReading, EqualsTheMergedFiles) {
-  const auto read = read_central_study(recorded().lab_reader);
+  const auto read = read_central_study(recorded().reader);
   EXPECT_EQ(all_rows(*read), recorded().merged());
 }
 
 TEST(CentralReadingSlow, EqualsTheMergedFilesInAnyOrderOfPushes) {
   std::vector<std::size_t> order{0, 1, 2};
+  int number = 0;
   do {
-    const Recorded study(order);
-    EXPECT_EQ(all_rows(*read_central_study(study.lab_reader)), study.merged());
+    const Recorded study("reading_" + std::to_string(++number), order);
+    EXPECT_EQ(all_rows(*read_central_study(study.reader)), study.merged());
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(CentralReading, TheSharedViewsHoldThoseWhoShare) {
-  const auto lab = read_central_study(recorded().lab_reader);
-  const auto shared = read_central_study(recorded().world.shared_reader("ben"));
+  const auto lab = read_central_study(recorded().reader);
+  const auto shared = read_central_study(recorded().lab.admit("ben", central::Admission::SharedReader));
   const std::string unshared = "SELECT count(*) FROM session JOIN sharing USING (person) WHERE granted = 0";
   EXPECT_EQ(lab->integer(unshared), 1);
   EXPECT_EQ(shared->integer(unshared), 0);
@@ -122,7 +119,7 @@ TEST(CentralReading, TheSharedViewsHoldThoseWhoShare) {
 }
 
 TEST(CentralReading, ReadersOpenAServiceAndWritersRefuseIt) {
-  const fs::path central = "service:" + recorded().lab_reader;
+  const fs::path central = "service:" + recorded().reader;
   read_central_with(read_central_study);
   EXPECT_EQ(read_tasks(central).protocols.size(), 2u);
   const auto refused = ThrowsMessage<base::Error>(HasSubstr("is a central database"));
@@ -135,10 +132,10 @@ TEST(CentralReading, ReadersOpenAServiceAndWritersRefuseIt) {
 TEST(CentralReading, AStationIsNoReaderAndAnotherSchemaIsNamed) {
   EXPECT_THAT([] { read_central_study(recorded().services[0]); },
               ThrowsMessage<base::Error>(HasSubstr("may read neither")));
-  recorded().world.sql("UPDATE vip.schema_version SET number = number - 1");
-  EXPECT_THAT([] { read_central_study(recorded().lab_reader); },
+  recorded().lab.ask("UPDATE vip.schema_version SET number = number - 1");
+  EXPECT_THAT([] { read_central_study(recorded().reader); },
               ThrowsMessage<base::Error>(HasSubstr("vip-study central upgrade")));
-  recorded().world.sql("UPDATE vip.schema_version SET number = number + 1");
+  recorded().lab.ask("UPDATE vip.schema_version SET number = number + 1");
 }
 
 }  // namespace

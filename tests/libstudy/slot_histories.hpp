@@ -59,9 +59,10 @@ class CutConnection : public SlotServer {
 class SlotHistory {
  public:
   static constexpr int stations = 5;
+  static Protocol protocol() { return parse_protocol(protocol_text("own_design"), "own"); }
 
   SlotHistory(SlotCentre& centre, std::uint64_t seed)
-      : centre_(centre), chance_(seed), protocol_(parse_protocol(protocol_text("own_design"), "own")) {
+      : centre_(centre), chance_(seed), protocol_(protocol()) {
     for (int i = 0; i < stations; ++i) Store(path(i), sqlite::Open::Create).add_run(run_of(i, {}));
   }
 
