@@ -7,7 +7,7 @@
 -- How many slots the assignment of a protocol has, so that stations of different versions are noticed.
 CREATE TABLE IF NOT EXISTS vip.slot_count (
   protocol_sha256 text PRIMARY KEY CHECK (length(protocol_sha256) = 64),
-  slots bigint NOT NULL CHECK (slots BETWEEN 1 AND 10000000)
+  slots bigint NOT NULL CHECK (slots BETWEEN 1 AND 1000000)
 );
 
 CREATE TABLE IF NOT EXISTS vip.reservation (
