@@ -87,7 +87,7 @@ TEST(CentralAdmin, OnlyPlainRolesAreAdmitted) {
   const auto refused = [&](const std::string& role, central::Admission as) {
     return test::message_of([&] { central::admit(lab.service(), role, as); });
   };
-  EXPECT_THAT(refused("nobody", central::Admission::Station), HasSubstr("createuser --pwprompt nobody"));
+  EXPECT_THAT(refused("nobody", central::Admission::Station), HasSubstr("createuser -P nobody"));
   EXPECT_THAT(refused("postgres", central::Admission::Station), HasSubstr("is a superuser"));
   EXPECT_THAT(refused("lab_owner", central::Admission::LabReader), HasSubstr("owns the database"));
   const std::string station = lab.admit("plain");

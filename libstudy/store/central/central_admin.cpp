@@ -193,7 +193,7 @@ void admit(const std::string& service, const std::string& role, Admission admiss
   const std::string shown = "'" + base::shortened(role) + "'";
   if (found.size() == 0 || found.text(0, 0) != "t") {
     refuse_work(central, "has no role " + shown + " that may log in",
-                "let an administrator of the server make it: createuser --pwprompt " + base::shortened(role));
+                "let an administrator of the server make it: createuser -P " + base::shortened(role));
   }
   if (found.text(0, 1) == "t")
     refuse_work(central, "the role " + shown + " owns the database, is a superuser or may create roles",

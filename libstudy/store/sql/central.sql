@@ -81,7 +81,8 @@ CREATE OR REPLACE VIEW vip.permission AS
         WHERE j.session_uid = c.session_uid AND j.what = w.what AND NOT j.superseded) AS live,
       (SELECT coalesce(a.answered, 0) FROM (
           SELECT q.question_code,
-            (SELECT CASE WHEN r.score = 1 AND q.kind = 'choice' AND q.scale_min = 0 AND q.scale_max = 1 THEN 1 ELSE 0 END
+            (SELECT CASE WHEN r.score = 1 AND q.kind = 'choice' AND q.scale_min = 0 AND q.scale_max = 1
+                THEN 1 ELSE 0 END
               FROM vip.response r WHERE r.session_uid = c.session_uid AND r.sender = c.sender
                 AND r.question_code = q.question_code ORDER BY r.response_id DESC LIMIT 1) AS answered,
             (SELECT count(*) FROM vip.response r WHERE r.session_uid = c.session_uid AND r.sender = c.sender
@@ -90,10 +91,12 @@ CREATE OR REPLACE VIEW vip.permission AS
             AND q.question_code = w.code) a
         WHERE NOT EXISTS (SELECT 1 FROM vip.joined_change j
           WHERE j.session_uid = c.session_uid AND j.what = w.what AND j.answers >= a.answers)) AS page,
-      EXISTS (SELECT 1 FROM vip.joined_change j WHERE j.session_uid = c.session_uid AND j.what = w.what) AS changed
+      EXISTS (SELECT 1 FROM vip.joined_change j
+        WHERE j.session_uid = c.session_uid AND j.what = w.what) AS changed
     FROM vip.chosen c CROSS JOIN (VALUES ('gaze', 'gaze_kept'), ('sharing', 'data_shared')) w (what, code)) p;
 
--- Sessions of people who may stand in public exports: nobody who refused once, or was asked and did not answer.
+-- Sessions of people who may stand in public exports: nobody who refused once, or was asked and did not
+-- answer.
 CREATE OR REPLACE VIEW vip.shareable AS
   SELECT c.* FROM vip.chosen c WHERE NOT EXISTS (
     SELECT 1 FROM vip.permission p WHERE p.person = c.person AND p.what = 'sharing' AND p.granted = 0);
@@ -104,7 +107,8 @@ CREATE OR REPLACE VIEW vip.gaze_showing AS
     SELECT session_uid, sender, presentation_id,
       row_number() OVER (PARTITION BY session_uid, sender ORDER BY presentation_id) AS place
     FROM vip.presentation) s
-  JOIN vip.permission p ON p.session_uid = s.session_uid AND p.sender = s.sender AND p.what = 'gaze' AND p.granted = 1
+  JOIN vip.permission p ON p.session_uid = s.session_uid AND p.sender = s.sender AND p.what = 'gaze'
+    AND p.granted = 1
   WHERE NOT EXISTS (SELECT 1 FROM vip.joined_change j WHERE j.session_uid = s.session_uid AND j.what = 'gaze'
     AND j.granted = 0 AND coalesce(j.showings, s.place) >= s.place);
 
@@ -118,10 +122,12 @@ CREATE OR REPLACE VIEW vip.gaze_session AS
 -- Deletes gaze of the caller's copy of a session that is refused.
 CREATE OR REPLACE FUNCTION vip.drop_refused_gaze(uid text) RETURNS void
 LANGUAGE sql VOLATILE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $$
-  DELETE FROM vip.gaze g WHERE g.session_uid = uid AND g.sender = session_user::text AND g.presentation_id NOT IN
-    (SELECT w.presentation_id FROM vip.gaze_showing w WHERE w.session_uid = uid AND w.sender = session_user::text);
-  DELETE FROM vip.head g WHERE g.session_uid = uid AND g.sender = session_user::text AND g.presentation_id NOT IN
-    (SELECT w.presentation_id FROM vip.gaze_showing w WHERE w.session_uid = uid AND w.sender = session_user::text);
+  DELETE FROM vip.gaze g WHERE g.session_uid = uid AND g.sender = session_user::text
+    AND g.presentation_id NOT IN (SELECT w.presentation_id FROM vip.gaze_showing w
+      WHERE w.session_uid = uid AND w.sender = session_user::text);
+  DELETE FROM vip.head g WHERE g.session_uid = uid AND g.sender = session_user::text
+    AND g.presentation_id NOT IN (SELECT w.presentation_id FROM vip.gaze_showing w
+      WHERE w.session_uid = uid AND w.sender = session_user::text);
   DELETE FROM vip.gaze_validation g WHERE g.session_uid = uid AND g.sender = session_user::text AND NOT EXISTS
     (SELECT 1 FROM vip.gaze_session w WHERE w.session_uid = uid AND w.sender = session_user::text);
 $$;
