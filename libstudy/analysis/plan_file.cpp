@@ -118,8 +118,8 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, const std::string& fi
   plan.repeated_pairs = static_cast<stats::RepeatedPairs>(index_of_name(repeated_names, repeated));
   if (root.has("margins")) {
     const auto margins = root.table("margins");
-    plan.margin_realism = margins.number_or("realism", plan.margin_realism, base::positive);
-    plan.margin_sickness = margins.number_or("sickness", plan.margin_sickness, base::positive);
+    plan.margin_realism = margins.number_or("realism", plan.margin_realism, margin_range("realism"));
+    plan.margin_sickness = margins.number_or("sickness", plan.margin_sickness, margin_range("sickness"));
   }
   if (root.has("exclusions")) read_exclusions(root.table("exclusions"), plan.exclusions);
   if (root.has("pilot")) plan.pilot = read_pilot(root.table("pilot"));

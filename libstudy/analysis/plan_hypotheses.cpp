@@ -167,6 +167,18 @@ void check_choice(const base::TomlTable& table, const Design& design, const Ques
                "write against, or a second condition");
 }
 
+/// Refuses a margin that no difference of the outcome can reach: every result would then be within it.
+void check_margin(const base::TomlTable& table, const Design& design, const Question& question,
+                  const DeclaredHypothesis& one) {
+  const double range =
+      value_of(design, question) == OutcomeValue::Mean ? question.scale_max - question.scale_min : 1;
+  if (!one.test.margin || *one.test.margin < range) return;
+  table.fail("margin",
+             "= " + base::shortest(*one.test.margin) + " is as wide as the outcome, which has a range of " +
+                 base::shortest(range) + ": every difference is within it",
+             "write a smaller margin");
+}
+
 void check_levels(const base::TomlTable& table, const Tables& tables, const Design& design,
                   const DeclaredHypothesis& one) {
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -222,6 +234,7 @@ void check_fits(const base::TomlTable& table, const Tables& compare, const Proto
                    : "use \"threshold\": the procedure chooses the levels that are answered about");
   check_levels(table, compare, design, one);
   check_choice(table, design, question, one);
+  check_margin(table, design, question, one);
 }
 
 std::string levels_toml(const DeclaredHypothesis::Levels& levels) {

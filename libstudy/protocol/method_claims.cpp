@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "libstudy/protocol/names.hpp"
 #include "libstudy/protocol/readers.hpp"
@@ -69,7 +70,7 @@ void read_margin(const base::TomlTable& table, MethodClaim& out) {
     return;
   }
   const auto margins = table.table("margin");
-  for (const std::string& score : out.scores) out.margins[score] = margins.number(score, base::positive);
+  for (const std::string& score : out.scores) out.margins[score] = margins.number(score, margin_range(score));
 }
 
 void read_claim_test(const base::TomlTable& table, MethodClaim& out) {
@@ -155,6 +156,12 @@ const char* claim_test_word(HypothesisKind kind) {
   return kind == HypothesisKind::Preference    ? "binomial"
          : kind == HypothesisKind::Equivalence ? "tost"
                                                : "paired_t";
+}
+
+base::Range margin_range(const std::string& score) {
+  // Realism is rated from 1 to 7, sickness from 0 to 3.
+  const double below = score == "realism" ? 6 : 3;
+  return {base::positive.min, std::nextafter(below, 0)};
 }
 
 MethodClaims read_method_claims(const std::vector<base::TomlTable>& tables) {

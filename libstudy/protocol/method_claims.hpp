@@ -16,6 +16,10 @@ using MethodClaims = std::vector<stats::MethodClaim>;
 /// wrong value, or for an id that another table has.
 MethodClaims read_method_claims(const std::vector<base::TomlTable>& tables);
 
+/// The margins that a test of this score ("realism" or "sickness") may have: below the range of its scale,
+/// because every difference lies within a wider margin.
+base::Range margin_range(const std::string& score);
+
 /// The claims as tables [[hypothesis]], which read_method_claims() reads back.
 std::string format_method_claims(const MethodClaims& claims);
 

@@ -219,6 +219,15 @@ TEST(Claims, APlanThatListsOthersChangesTheResultsAsItSays) {
   EXPECT_EQ(page.find(">H3</span>"), std::string::npos);
 }
 
+TEST(Claims, HypothesesAboutATaskWithoutAnswersAreNamed) {
+  const study::TaskStudy study{{made_study::task2(12)}, 0};
+  const auto own = made_study::results_of(study, plan_of(changed_hypotheses()));
+  ASSERT_EQ(own.at("not_analysed").size(), 1u);
+  EXPECT_EQ(own.at("not_analysed")[0].at("what"), "worse and H2");
+  EXPECT_EQ(own.at("not_analysed")[0].at("task"), "task1");
+  EXPECT_EQ(made_study::results_of(study).at("not_analysed").size(), 0u) << "no plan, no promise";
+}
+
 TEST(Claims, PreregistrationAndPowerUseThePlansOwn) {
   const auto own = plan_of(changed_hypotheses());
   EXPECT_THAT(hypotheses_of_bundle(own.plan), AllOf(HasSubstr("\"worse\""), Not(HasSubstr("\"H3\""))));
@@ -267,6 +276,8 @@ TEST(Claims, MistakesInTheirTablesAreRefusedAtTheirPlace) {
   refuse("test = ", "margin = \"wide\"\ntest = ", "plan.toml:8:");
   refuse("test = ", "margin = {realism = -1}\ntest = ", "plan.toml:8:");
   refuse("test = ", "margin = {realism = 1, sickness = 1}\ntest = ", "sickness");
+  refuse("test = ", "margin = {realism = 6}\ntest = ", "plan.toml:8:");
+  refuse("format = 1\n", "format = 1\n[margins]\nsickness = 3\n", "plan.toml:3:");
   refuse("test = ", "family = \"f\"\ntest = ", "family");
   refuse("text = \"t\"\n", "", "text");
   refuse("format = 1\n", ("format = 1\n" + good.substr(11)).c_str(), "is the id of another hypothesis");

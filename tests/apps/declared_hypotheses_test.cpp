@@ -105,6 +105,7 @@ TEST(DeclaredHypotheses, WhatDoesNotFitTheProtocolIsRefusedAtItsPlace) {
   expect("family", "margn = 1\nfamily", "margn");
   expect("family = \"hitches\"", "adjust = \"holm\"", "needs a family");
   expect("\"greater\"", "\"two-sided\"\nmargin = 1", "needs a side");
+  expect("\"greater\"", "\"greater\"\nmargin = 1", "every difference is within it");
   expect("{hitch = \"h50\"}, {hitch = \"none\"}", "{content = \"dam\"}, {content = \"drop\"}",
          "different people see the two conditions");
   expect("hitch = \"none\"}", "content = \"dam\"}", "names other factors");

@@ -1,5 +1,6 @@
 #include "libstudy/analysis/tasks/results.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "libstudy/analysis/claims.hpp"
@@ -239,6 +240,28 @@ std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>&
   return out;
 }
 
+/// Entries of not_analysed for the hypotheses that the plan declares about a task without an analysis here.
+/// The shipped hypotheses, which stand in for a plan that declares none, get no entry.
+Json claims_without_task(const ResultsRequest& request, const std::vector<TaskPart>& parts) {
+  Json list = Json::array();
+  for (const TaskKind task : {TaskKind::Task1, TaskKind::Task2}) {
+    // An analysis of an own design lists all hypotheses itself.
+    const bool listed = std::ranges::any_of(parts, [&](const TaskPart& part) {
+      return part.data.task == task || part.data.task == TaskKind::Own;
+    });
+    const auto ids = ids_of(claims_of_task(request.plan.plan.claims, task == TaskKind::Task1 ? 1 : 2));
+    if (listed || ids.empty()) continue;
+    const bool asked = std::ranges::find(request.tasks, task) != request.tasks.end();
+    list.push_back({{"task", task_name(task)},
+                    {"protocol", ""},
+                    {"what", ids_in_short(ids)},
+                    {"reason", (asked ? std::string("the database has no analysed answer of ")
+                                      : std::string("this command does not analyse ")) +
+                                   task_name(task)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Results study_results(const ResultsRequest& request) {
@@ -263,6 +286,7 @@ Results make_results(const TaskStudy& study, const ResultsRequest& request) {
       (&one == &chosen->front() ? first : others).push_back(analyse(study, one, request, out.missing));
   }
   out.json = assemble(request, first, study.about_people);
+  append(out.json["not_analysed"], claims_without_task(request, first));
   out.json["study"]["simulated_people"] = simulated_people(study);
   out.json["roster"] = roster_json(study, sections_of(first, others));
   if (!others.empty()) out.json["apart"] = Json::array();
