@@ -65,6 +65,7 @@ void check_kept(const std::filesystem::path& input, const char* problem,
 
 void check_shards_kept(const CellOptions& cells, const std::map<std::string, std::string>& outputs) {
   for (const auto& shard : cells.shards) check_kept(shard, "is a shard that is to be joined", outputs);
+  check_kept(cells.shards_in, "holds the names of the shards", outputs);
 }
 
 }  // namespace apps

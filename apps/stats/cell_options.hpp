@@ -49,7 +49,7 @@ void print_cells(const std::vector<Listed>& cells) {
 /// shard that is to be joined".
 void check_kept(const std::filesystem::path& input, const char* problem,
                 const std::map<std::string, std::string>& outputs);
-/// check_kept() for each shard.
+/// check_kept() for each shard and for the file of --shards-in.
 void check_shards_kept(const CellOptions& cells, const std::map<std::string, std::string>& outputs);
 
 }  // namespace apps

@@ -215,6 +215,9 @@ TEST_F(CellsE2e, OfAFitThroughTheCommandLine) {
   expect_refused("fit-ptpe " + pilot + " --cell 0123 --out " + at("x"), 1, "--cell 0123: is no cell");
   expect_refused("fit-ptpe merge " + pilot + " --seed 2 --shards-in " + at("shards.txt"), 1,
                  "another seed (1, here 2)");
+  expect_refused(
+      "fit-ptpe merge " + pilot + " --shards-in " + at("shards.txt") + " --json " + at("shards.txt"), 1,
+      "holds the names of the shards");
   expect_refused("fit-ptpe merge --resamples 200", 2, "database or --db is required");
   expect_refused("fit-ptpe " + pilot + " --cell 0123", 2, "--out");
   expect_refused("fit-ptpe " + pilot + " --list --json " + at("x"), 2, "--json");
