@@ -126,6 +126,8 @@ TEST(CentralReading, ReadersOpenAServiceAndWritersRefuseIt) {
   EXPECT_THAT([&] { Store(central, Open::Create); }, refused);
   EXPECT_THAT([&] { withdraw(central, "P01"); }, refused);
   EXPECT_THAT([&] { merge({recorded().files[0]}, central); }, refused);
+  EXPECT_THAT([&] { study::push(central, recorded().services[0]); }, refused);
+  EXPECT_THAT([&] { withdrawn_at_centre(central, recorded().services[0]); }, refused);
   EXPECT_FALSE(fs::exists(central));
 }
 

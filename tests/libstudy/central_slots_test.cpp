@@ -65,6 +65,30 @@ TEST(CentralSlots, AStationReachesNeitherAnothersSlotsNorTheBooks) {
     EXPECT_THROW(direct.script(sql), base::Error) << sql;
 }
 
+TEST(CentralSlots, ASessionThatTwoStationsSentIsOneUse) {
+  const test::TemporaryFolder folder;
+  const Protocol pilot = test::pilot();
+  const std::string first = test::lab().admit("slots_first");
+  std::string reservation;
+  {
+    Store store(folder / "s.db", sqlite::Open::Create);
+    std::string offline;
+    const auto slots = deal_slots(
+        store, [&] { return connect_slots(first); }, {first, pilot.sha256, slot_count(pilot), 1, false},
+        offline);
+    SessionPlan session = test::session_plan(pilot, "P01", 7, slots.front().slot);
+    session.reservation = reservation = slots.front().reservation;
+    EXPECT_EQ(open_of(test::lab(), pilot.sha256), "1");
+    store.add_run({pilot, "{}", {session}});
+  }
+  for (const std::string& station : {first, test::lab().admit("slots_second")})
+    study::push(folder / "s.db", station);
+  EXPECT_EQ(open_of(test::lab(), pilot.sha256), "0");
+  EXPECT_EQ(
+      test::lab().ask("SELECT count(*) FROM vip.slot_session WHERE reservation = '" + reservation + "'"),
+      std::vector<std::string>{"1"});
+}
+
 TEST(CentralSlotsSlow, AServerThatIsGoneIsToldFromARefusal) {
   test::Lab gone("slots_gone");
   const std::string north = gone.admit("north");

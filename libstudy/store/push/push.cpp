@@ -8,6 +8,7 @@
 
 #include "libstudy/store/central/central_schema.hpp"
 #include "libstudy/store/central/postgres.hpp"
+#include "libstudy/store/file/beside.hpp"
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/push/centre.hpp"
@@ -344,12 +345,14 @@ class Pusher {
 Push push(const StudyFile& study, const std::string& service,
           const std::function<void(std::int64_t done, std::int64_t all)>& told) {
   pg::check_service_name(service);
+  refuse_service(study.path);
   const auto file = open_study(study).database;
   return Pusher(*file, service).push(told);
 }
 
 std::vector<std::string> withdrawn_at_centre(const StudyFile& study, const std::string& service) {
   pg::check_service_name(service);
+  refuse_service(study.path);
   const auto file = open_study(study).database;
   std::map<std::string, std::string> codes;
   std::set<std::string> people;

@@ -24,19 +24,19 @@ CREATE TABLE IF NOT EXISTS vip.reservation (
 CREATE INDEX IF NOT EXISTS reservation_of_protocol ON vip.reservation (protocol_sha256) WHERE returned IS NULL;
 CREATE INDEX IF NOT EXISTS session_of_reservation ON vip.session (reservation) WHERE reservation IS NOT NULL;
 
--- Sessions that count as uses of their slot, as Store::taken_slots() has them.
+-- Sessions that count as uses of their slot, as Store::taken_slots() has them. Of a session that several stations
+-- sent, one copy counts.
 CREATE OR REPLACE VIEW vip.slot_session AS
-  SELECT s.sender, s.protocol_sha256, s.slot, s.reservation FROM vip.session s
-  WHERE s.state IN ('open', 'done', 'stopped')
-    AND EXISTS (SELECT 1 FROM vip.protocol p WHERE p.protocol_sha256 = s.protocol_sha256
-                AND p.sender = s.sender AND p.test_data = s.test_data);
+  SELECT s.protocol_sha256, s.slot, s.reservation FROM vip.session s
+  JOIN vip.chosen c ON c.session_uid = s.session_uid AND c.sender = s.sender
+  JOIN vip.protocol p ON p.protocol_sha256 = s.protocol_sha256 AND p.sender = s.sender
+  WHERE s.state IN ('open', 'done', 'stopped') AND s.test_data = p.test_data;
 
 -- Reservations that count as uses of their slot.
 CREATE OR REPLACE VIEW vip.open_reservation AS
   SELECT r.sender, r.protocol_sha256, r.slot, r.token, r.place FROM vip.reservation r
   WHERE r.returned IS NULL
-    AND NOT EXISTS (SELECT 1 FROM vip.slot_session s
-                    WHERE s.reservation = r.token || '.' || r.place AND s.sender = r.sender);
+    AND NOT EXISTS (SELECT 1 FROM vip.slot_session s WHERE s.reservation = r.token || '.' || r.place);
 
 -- The slots of a request, by place: those that are used least, the lowest first. A token that was seen before
 -- gets the same slots.
