@@ -76,20 +76,18 @@ class Lab {
     };
     for (const central::Table& table : central::tables()) {
       if (table.scope == central::Scope::Person) add(pushing::read_rows(*file, table));
-      for (const pushing::LocalSession& session : pushing::read_sessions(*file)) {
+    }
+    for (const pushing::LocalSession& session : pushing::read_sessions(*file)) {
+      const pushing::Core core = pushing::read_core(*file, session);
+      for (const pushing::TableRows& rows : core.tables) add(rows);
+      add(core.changes);
+      add(core.change_events);
+      for (const central::Table& table : central::tables()) {
         if (table.scope == central::Scope::Protocol)
           add(pushing::read_rows(*file, table, session.protocol_id));
         if (table.scope == central::Scope::Run) add(pushing::read_rows(*file, table, session.run_id));
-        if (table.scope != central::Scope::Session) continue;
-        if (!table.large) {
-          add(pushing::read_rows(*file, table, session.id, session.uid));
-          continue;
-        }
-        sqlite::Statement row(*file,
-                              "SELECT presentation_id FROM presentation JOIN trial USING (trial_id) WHERE "
-                              "session_id = ?");
-        for (row.bind_all(session.id); row.step();)
-          add(pushing::read_rows(*file, table, row.integer(0), session.uid));
+        for (const pushing::Showing& showing : core.showings)
+          if (table.large) add(pushing::read_large(*file, table, session, showing));
       }
     }
     return {lines.begin(), lines.end()};

@@ -5,6 +5,7 @@
 #include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/withdraw.hpp"
+#include "stats/base/utc.hpp"
 #include "tests/libstudy/central_fixture.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 
@@ -78,6 +79,29 @@ TEST_F(CentralPush, AnOlderCopyChangesNothing) {
   EXPECT_EQ(done.older, 1);
   EXPECT_EQ(done.rows, 0);
   EXPECT_EQ(lab_.rows_of(north), rows);
+}
+
+TEST_F(CentralPush, AMergeIntoTheFileSendsNoFrameAgain) {
+  const fs::path file = pilot_of("s.db", {"P01", "P02"}), other = [&] {
+    const base::FixedUtc earlier("2026-01-01T00:00:00Z");  // the merge puts these sessions first
+    return pilot_of("other.db", {"P07", "P08"});
+  }();
+  const std::string north = station();
+  for (const fs::path& path : {other, file}) go_on_with(path, 2);
+  const std::string numbers =
+      "SELECT min(presentation_id) || ' ' || person FROM presentation JOIN trial USING (trial_id) JOIN "
+      "session USING (session_id) GROUP BY person";
+  const auto before = test::column(file, numbers);
+  push(file, north);
+  merge({other}, file);
+  auto after = test::column(file, numbers);
+  std::sort(after.begin(), after.end());
+  EXPECT_FALSE(std::includes(after.begin(), after.end(), before.begin(), before.end()))
+      << "the merge kept all row numbers";
+  const Push done = push(file, north);
+  EXPECT_EQ(done.sent, 2) << "sessions that were there already were sent again";
+  EXPECT_EQ(lab_.rows_of(north), test::Lab::rows_of_file(file));
+  EXPECT_EQ(push(file, north).rows, 0);
 }
 
 TEST_F(CentralPush, ACopyThatWentAnotherWayIsRefusedAndTheOthersAreSent) {

@@ -10,9 +10,9 @@
 ///   protocol_id        protocol_sha256: protocol.sha256
 ///   question_id        protocol_sha256 and question_code: question.code
 ///
-/// Each row below a session begins with session_uid; its other row numbers stay those of the file that was
-/// pushed. Each table has the column `sender`: the role that sent the row. It is a part of every key, so that
-/// a station can neither replace the rows of another nor add rows to its sessions.
+/// Each row below a session begins with session_uid; its other row numbers count from 1 in the session
+/// (push/session_copy.hpp). Each table has the column `sender`: the role that sent the row. It is a part of
+/// every key, so that a station can neither replace the rows of another nor add rows to its sessions.
 
 #include <cstdint>
 #include <string>

@@ -166,7 +166,7 @@ class Pusher {
       push_protocol(session);
       replace_core(session, core, there);
     }
-    const bool large = push_large(session, same);
+    const bool large = push_large(session, core, same);
     if (large || !same) ++done_.sent;
   }
 
@@ -257,36 +257,31 @@ class Pusher {
 
   /// Sends the large tables of a session, a part for each presentation. counted: the rest of the session did
   /// not change, so that equal numbers of rows are equal rows. True if something was sent.
-  bool push_large(const LocalSession& session, bool counted) {
-    std::vector<std::int64_t> presentations;
-    sqlite::Statement row(file_,
-                          "SELECT presentation_id FROM presentation JOIN trial USING (trial_id) WHERE "
-                          "session_id = ? ORDER BY presentation_id");
-    for (row.bind_all(session.id); row.step();) presentations.push_back(row.integer(0));
+  bool push_large(const LocalSession& session, const Core& core, bool counted) {
     bool sent = false;
     Waiting waiting;
-    for (const std::int64_t presentation : presentations) {
+    for (const pushing::Showing& showing : core.showings) {
       for (const Table& table : central::tables())
-        if (table.large) add_part(session, table, presentation, counted, waiting);
+        if (table.large) add_part(session, table, showing, counted, waiting);
       if (waiting.count > rows_at_once) sent = send_parts(session, waiting) || sent;
     }
     return send_parts(session, waiting) || sent;
   }
 
-  void add_part(const LocalSession& session, const Table& table, std::int64_t presentation, bool counted,
-                Waiting& waiting) {
-    const std::int64_t count = pushing::count_rows(file_, table, presentation);
-    const std::string name = table.name + " " + std::to_string(presentation);
+  void add_part(const LocalSession& session, const Table& table, const pushing::Showing& showing,
+                bool counted, Waiting& waiting) {
+    const std::int64_t count = pushing::count_large(file_, table, showing);
+    const std::string name = table.name + " " + std::to_string(showing.number);
     const Parts& parts = ledger_[session.uid];
     const auto known = parts.find(name);
     // Fewer rows: an older copy, or gaze that is refused, which the centre deletes by itself.
     if (count == 0 || (known != parts.end() && count < known->second.rows + (counted ? 1 : 0))) return;
-    TableRows rows = pushing::read_rows(file_, table, presentation, session.uid);
+    TableRows rows = pushing::read_large(file_, table, session, showing);
     const std::string sha256 = pushing::digest_of({rows});
     if (known != parts.end()) {
       if (known->second.sha256 == sha256) return;
       waiting.deletions += "DELETE FROM " + at_centre(table) + of_session(session.uid) +
-                           " AND presentation_id = " + std::to_string(presentation) + ";";
+                           " AND presentation_id = " + std::to_string(showing.number) + ";";
     }
     waiting.parts[name] = {sha256, count};
     waiting.count += rows.rows.size();

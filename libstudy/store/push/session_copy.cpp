@@ -68,12 +68,6 @@ TableRows read_rows(Connection& file, const Table& table, std::int64_t id, const
   return found;
 }
 
-std::int64_t count_rows(Connection& file, const Table& table, std::int64_t id) {
-  Statement row(file, "SELECT count(*) FROM \"" + table.name + "\" x WHERE " + table.rows);
-  row.bind_all(id).step();
-  return row.integer(0);
-}
-
 std::string digest_of(const std::vector<TableRows>& tables) {
   std::string text;
   for (const TableRows& one : tables) {
@@ -89,38 +83,95 @@ std::size_t place_of(const Table& table, const std::string& column) {
   return static_cast<std::size_t>(found - table.columns.begin());
 }
 
+namespace {
+
+/// By column: the number in the session of each row number of the file.
+using Numbers = std::map<std::string, std::map<std::string, std::string>>;
+
+/// Adds the numbers of a table's rows, if it has row numbers.
+void add_numbers(const TableRows& rows, Numbers& numbers) {
+  const std::string column = rows.table->name + "_id";
+  const std::size_t place = place_of(*rows.table, column);
+  if (place == rows.table->columns.size()) return;
+  auto& known = numbers[column];
+  for (const Row& row : rows.rows) known.emplace(*row[place], pg::text_of(std::int64_t(known.size()) + 1));
+}
+
+/// Replaces row numbers. One of a row that the session does not have becomes negative, so that the centre
+/// refuses it.
+void renumber(TableRows& rows, const Numbers& numbers) {
+  for (std::size_t i = 0; i < rows.table->columns.size(); ++i) {
+    const auto known = numbers.find(rows.table->columns[i].name);
+    if (known == numbers.end()) continue;
+    for (Row& row : rows.rows) {
+      if (!row[i]) continue;
+      const auto number = known->second.find(*row[i]);
+      row[i] = number == known->second.end() ? "-" + *row[i] : number->second;
+    }
+  }
+}
+
+/// Parts the changes of permissions from the other events.
+void part_events(TableRows rows, Core& core) {
+  const Table& table = *rows.table;
+  const std::size_t kind = place_of(table, "kind"), utc = place_of(table, "utc"),
+                    clock = place_of(table, "clock_ns"), detail = place_of(table, "detail");
+  const auto first = std::stable_partition(rows.rows.begin(), rows.rows.end(),
+                                           [&](const Row& row) { return row[kind] != permission_event; });
+  core.change_events = {&table, {std::make_move_iterator(first), std::make_move_iterator(rows.rows.end())}};
+  rows.rows.erase(first, rows.rows.end());
+  for (const Row& row : rows.rows) core.log.push_back({row[utc], row[clock], row[kind], row[detail]});
+  core.tables.push_back(std::move(rows));
+}
+
+/// Notes which presentations there are. Returns how many of them have ended.
+std::int64_t look_at_showings(const TableRows& rows, Core& core) {
+  const std::size_t id = place_of(*rows.table, "presentation_id"), state = place_of(*rows.table, "state");
+  std::int64_t ended = 0;
+  for (const Row& row : rows.rows) {
+    core.showings.push_back({number_of(row[id]), static_cast<std::int64_t>(core.showings.size()) + 1});
+    if (row[state] != "running") ++ended;
+  }
+  return ended;
+}
+
+}  // namespace
+
 Core read_core(Connection& file, const LocalSession& session) {
   Core core;
+  std::vector<TableRows> all;
+  Numbers numbers;
   for (const Table* table : central::in_order()) {
     if (table->scope != central::Scope::Session || table->large) continue;
-    TableRows rows = read_rows(file, *table, session.id, session.uid);
-    if (table->name == "permission_change") {
-      core.changes = std::move(rows);
-      continue;
-    }
-    if (table->name == "event") {
-      const std::size_t kind = place_of(*table, "kind"), utc = place_of(*table, "utc"),
-                        clock = place_of(*table, "clock_ns"), detail = place_of(*table, "detail");
-      const auto first = std::stable_partition(rows.rows.begin(), rows.rows.end(),
-                                               [&](const Row& row) { return row[kind] != permission_event; });
-      core.change_events = {table,
-                            {std::make_move_iterator(first), std::make_move_iterator(rows.rows.end())}};
-      rows.rows.erase(first, rows.rows.end());
-      for (const Row& row : rows.rows) core.log.push_back({row[utc], row[clock], row[kind], row[detail]});
-    }
-    if (table->name == "presentation") {
-      const std::size_t state = place_of(*table, "state");
-      core.progress += std::count_if(rows.rows.begin(), rows.rows.end(),
-                                     [&](const Row& row) { return row[state] != "running"; });
-    }
-    core.progress += static_cast<std::int64_t>(rows.rows.size());
-    core.tables.push_back(std::move(rows));
+    all.push_back(read_rows(file, *table, session.id, session.uid));
+    add_numbers(all.back(), numbers);
+    if (table->name == "presentation") core.progress += look_at_showings(all.back(), core);
   }
-  std::vector<TableRows> all = core.tables;
-  all.push_back(core.changes);
-  all.push_back(core.change_events);
+  for (TableRows& rows : all) renumber(rows, numbers);
   core.sha256 = digest_of(all);
+  for (TableRows& rows : all) {
+    if (rows.table->name == "permission_change")
+      core.changes = std::move(rows);
+    else if (rows.table->name == "event")
+      part_events(std::move(rows), core);
+    else
+      core.tables.push_back(std::move(rows));
+  }
+  for (const TableRows& rows : core.tables) core.progress += static_cast<std::int64_t>(rows.rows.size());
   return core;
+}
+
+TableRows read_large(Connection& file, const Table& table, const LocalSession& session,
+                     const Showing& showing) {
+  TableRows rows = read_rows(file, table, showing.id, session.uid);
+  renumber(rows, {{"presentation_id", {{pg::text_of(showing.id), pg::text_of(showing.number)}}}});
+  return rows;
+}
+
+std::int64_t count_large(Connection& file, const Table& table, const Showing& showing) {
+  Statement row(file, "SELECT count(*) FROM \"" + table.name + "\" x WHERE " + table.rows);
+  row.bind_all(showing.id).step();
+  return row.integer(0);
 }
 
 std::string log_digest(const std::vector<Row>& log, std::size_t count) {

@@ -27,22 +27,31 @@ struct TableRows {
 /// protocol or run. uid: session.uid, for tables of a session.
 TableRows read_rows(sqlite::Connection& file, const central::Table& table, std::int64_t id = 0,
                     const std::string& uid = {});
-/// How many rows read_rows() gives.
-std::int64_t count_rows(sqlite::Connection& file, const central::Table& table, std::int64_t id);
 std::string digest_of(const std::vector<TableRows>& tables);
 /// The place of a column in the rows of a table.
 std::size_t place_of(const central::Table& table, const std::string& column);
 
-/// The small tables of a session. Changes of permissions stand apart, because copies of a session join
-/// theirs.
+/// A presentation: its row number in the file, and its number at the centre.
+struct Showing {
+  std::int64_t id = 0, number = 0;
+};
+
+/// The small tables of a session. Row numbers (trial_id, presentation_id, ...) count from 1 in the session,
+/// in the order of the file, because a merge into the file gives all rows new numbers in the same order.
+/// Changes of permissions stand apart, because copies of a session join theirs.
 struct Core {
   std::vector<TableRows> tables;  ///< without permission_change; event without changes of permissions
   TableRows changes, change_events;
+  std::vector<Showing> showings;
   std::string sha256;         ///< of all of them
   std::vector<pg::Row> log;   ///< utc, clock_ns, kind and detail of the events in `tables`
   std::int64_t progress = 0;  ///< rows in `tables` and finished presentations: it only grows
 };
 Core read_core(sqlite::Connection& file, const LocalSession& session);
+/// The rows of a large table of one presentation, and how many they are.
+TableRows read_large(sqlite::Connection& file, const central::Table& table, const LocalSession& session,
+                     const Showing& showing);
+std::int64_t count_large(sqlite::Connection& file, const central::Table& table, const Showing& showing);
 /// Digest of the first `count` events.
 std::string log_digest(const std::vector<pg::Row>& log, std::size_t count);
 
