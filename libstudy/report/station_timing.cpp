@@ -13,8 +13,9 @@ using Lines = std::vector<std::vector<std::string>>;
 /// The heading of each figure, then each station with its figures.
 Lines lines_of(const std::vector<Field>& stations) {
   Lines lines{{"Station", "Showings", "Pass", "Degraded", "Fail", "Not judged", "Grades",
-               "Error of the mean rate, mean (frames/s)", "Largest",
-               "Error of the <i>SD</i>, mean (frames/s)", "Largest", "Late frames", "Longest interval (ms)"}};
+               "Error of the mean rate: mean (frames/s)", "Error of the mean rate: largest",
+               "Error of the <i>SD</i>: mean (frames/s)", "Error of the <i>SD</i>: largest", "Late frames",
+               "Longest interval (ms)"}};
   for (const Field& one : stations)
     lines.push_back({one["station"].words().empty() ? "no name" : words(one["station"]),
                      count(one["showings"]), count(one["pass"]), count(one["degraded"]), count(one["fail"]),
