@@ -70,16 +70,23 @@ Ledger Centre::read_ledger() {
   return ledger;
 }
 
-void Centre::note(const std::string& of, const std::string& name, const Part& part) {
-  connection_.run(
-      "INSERT INTO vip.part (of, part, sha256, rows, events, progress, log_sha256) VALUES ($1, $2, $3, $4, "
-      "$5, "
-      "$6, $7) ON CONFLICT (of, sender, part) DO UPDATE SET sha256 = excluded.sha256, rows = excluded.rows, "
-      "events = excluded.events, progress = excluded.progress, log_sha256 = excluded.log_sha256, pushed_utc "
-      "= "
-      "now()",
-      {of, name, part.sha256, pg::text_of(part.rows), pg::text_of(part.events), pg::text_of(part.progress),
-       part.log_sha256});
+void Centre::note(const std::string& of, const Parts& parts) {
+  std::vector<Row> rows;
+  for (const auto& [name, part] : parts)
+    rows.push_back({of, name, part.sha256, pg::text_of(part.rows), pg::text_of(part.events),
+                    pg::text_of(part.progress), part.log_sha256});
+  connection_.insert("vip.part",
+                     {{"of", "text"},
+                      {"part", "text"},
+                      {"sha256", "text"},
+                      {"rows", "bigint"},
+                      {"events", "bigint"},
+                      {"progress", "bigint"},
+                      {"log_sha256", "text"}},
+                     rows,
+                     "ON CONFLICT (of, sender, part) DO UPDATE SET sha256 = excluded.sha256, rows = "
+                     "excluded.rows, events = excluded.events, progress = excluded.progress, log_sha256 = "
+                     "excluded.log_sha256, pushed_utc = now()");
 }
 
 std::int64_t Centre::insert(const TableRows& rows, const std::string& tail) {

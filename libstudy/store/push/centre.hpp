@@ -42,8 +42,8 @@ class Centre {
   /// Which of these people withdrew.
   std::set<std::string> withdrawn_among(const std::set<std::string>& people);
   Ledger read_ledger();
-  /// Writes a part into the ledger.
-  void note(const std::string& of, const std::string& name, const Part& part);
+  /// Writes parts into the ledger.
+  void note(const std::string& of, const Parts& parts);
   /// Inserts rows; returns how many.
   std::int64_t insert(const TableRows& rows, const std::string& tail = "");
   /// The first `count` events of a session without changes of permissions, as Core::log.

@@ -222,7 +222,7 @@ class Pusher {
       insert(rows, "ON CONFLICT DO NOTHING");
       part.rows += static_cast<std::int64_t>(rows.rows.size());
     }
-    centre_.note(session.protocol_sha256, "core", part);
+    centre_.note(session.protocol_sha256, {{"core", part}});
     transaction.commit();
     known = part;
   }
@@ -250,7 +250,7 @@ class Pusher {
     }
     insert(changes);
     insert(events);
-    centre_.note(session.uid, "core", part);
+    centre_.note(session.uid, {{"core", part}});
     if (!changes.rows.empty()) drop_refused_gaze(session);
     transaction.commit();
   }
@@ -300,7 +300,7 @@ class Pusher {
       insert(rows);
       motion = motion || table->name == "gaze" || table->name == "head";
     }
-    for (const auto& [name, part] : waiting.parts) centre_.note(session.uid, name, part);
+    centre_.note(session.uid, waiting.parts);
     if (motion) drop_refused_gaze(session);
     transaction.commit();
     for (const auto& [name, part] : waiting.parts) ledger_[session.uid][name] = part;
@@ -320,7 +320,7 @@ class Pusher {
       pg::Transaction transaction(centre_.connection());
       centre_.connection().script("DELETE FROM vip.label WHERE true" + and_mine);
       insert(rows);
-      centre_.note("labels", "core", part);
+      centre_.note("labels", {{"core", part}});
       transaction.commit();
     } catch (const pg::Failure& failure) {
       // Somebody withdrew just now: the next push sends the labels of the others.
