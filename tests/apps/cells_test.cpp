@@ -146,7 +146,7 @@ TEST_F(FitCells, OfOtherDataOptionsAndProgramsAreRefusedByName) {
   text.replace(text.find("shard/1"), 7, "shard/2");
   changed(text, "newer program");
   text = sound;
-  char& digit = text[text.rfind(".") + 2];
+  char& digit = text[text.rfind('.') + 2];
   digit = digit == '1' ? '2' : '1';
   changed(text, "is damaged or cut short");
 }

@@ -105,6 +105,35 @@ TEST(RivalComparison, FoldsAreDealtBySeed) {
   EXPECT_THROW(stats::compare_rivals(study.models, study.data.answers, -1, wrong), std::invalid_argument);
 }
 
+TEST(RivalComparison, PartsOfTheGroupsGiveTheWholeBitForBit) {
+  const Study study;
+  stats::RivalComparisonOptions options;
+  options.folds = 5;
+  ASSERT_EQ(stats::rival_group_count(study.data.answers.people, options), 5);
+  std::vector<std::vector<stats::Result<stats::RivalFit>>> without;
+  for (const auto& model : study.models) {
+    auto& fits = without.emplace_back();
+    for (const stats::RivalGroups part : {stats::RivalGroups{0, 2}, {2, 3}})
+      for (const auto& fit : stats::fit_without_groups(model, study.data.answers, options, part))
+        fits.push_back(fit);
+  }
+  const auto serial = stats::compare_rivals(study.models, study.data.answers, -1, options);
+  const auto joined = stats::compare_rivals(study.models, study.data.answers, -1, options, &without);
+  ASSERT_TRUE(serial && joined);
+  EXPECT_EQ(joined->order, serial->order);
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    EXPECT_EQ(joined->models[m].by_person, serial->models[m].by_person);
+    EXPECT_EQ(joined->models[m].probabilities, serial->models[m].probabilities);
+    EXPECT_EQ(joined->models[m].weight, serial->models[m].weight);
+  }
+  without[1].pop_back();
+  EXPECT_THROW(stats::compare_rivals(study.models, study.data.answers, -1, options, &without),
+               std::invalid_argument);
+  without.pop_back();
+  EXPECT_THROW(stats::compare_rivals(study.models, study.data.answers, -1, options, &without),
+               std::invalid_argument);
+}
+
 TEST(RivalComparison, TwinsCannotBeToldApart) {
   Study study;
   study.models[1] = study.models[0];
