@@ -248,8 +248,11 @@ TEST_F(CentralRoles, ASessionAndAWithdrawalThatMeetLeaveNothing) {
         transaction.commit();
       });
     });
-    while (test::lab().ask("SELECT 1 FROM pg_locks WHERE locktype = 'advisory' AND NOT granted").empty())
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const std::string waiting = "SELECT 1 FROM pg_locks WHERE locktype = 'advisory' AND NOT granted";
+    while (test::lab().ask(waiting).empty() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_LT(std::chrono::steady_clock::now(), end) << "the second does not wait for the first";
     begun.commit();
     other.join();
     EXPECT_THAT(message, HasSubstr(session_first ? "nothing was thrown" : "withdrew"));
