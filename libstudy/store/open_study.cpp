@@ -133,7 +133,7 @@ OpenedStudy open_central_study(const std::string& service) {
   const std::lock_guard guard(studies.turn);
   if (!studies.read)
     throw base::Error("service:" + service, "is a central database, which this program does not read",
-                      "read it with vip-study or vip-stats");
+                      "read it with vip-stats report");
   auto& known = studies.known[service];
   if (!known) known = studies.read(service);
   auto copy = std::make_unique<Connection>(known->path(), sqlite::Temporary{});

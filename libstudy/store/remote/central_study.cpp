@@ -183,7 +183,7 @@ class CentralReader {
         shown_,
         "has schema " + std::to_string(there) + ", and this program reads schema " + std::to_string(here),
         there < here ? "let its owner run vip-study central upgrade"
-                     : "use the newer vip-study at this computer");
+                     : "use the newer program on this computer");
   }
 
   StationCopy& copy_of(const std::string& sender) {
