@@ -163,7 +163,7 @@ Upgrade upgrade(const std::string& service) {
                     std::to_string(done.now),
                 "use a newer vip-study");
   StandingTables standing = standing_tables(central);
-  for (const char* own : {"part", "schema_version"}) standing.erase(own);
+  for (const char* own : {"part", "schema_version", "reservation", "slot_count"}) standing.erase(own);
   for (const Table* one : in_order()) {
     const auto there = standing.find(one->name);
     if (there == standing.end()) {
