@@ -112,7 +112,8 @@ class TableMaker {
     table_.name = local_.name;
     table_.scope = scope_;
     table_.large = is_large(local_);
-    if (scope_ == Scope::Session) add({"session_uid", "text", true, local_.name == "session" ? "uid" : "session_id", "?2"});
+    if (scope_ == Scope::Session)
+      add({"session_uid", "text", true, local_.name == "session" ? "uid" : "session_id", "?2"});
     for (const LocalColumn& column : local_.columns) add_column(column);
     add_keys();
     add_checks();
@@ -220,12 +221,13 @@ class TableMaker {
     for (const auto& [column, parent] : table.parents) {
       if (parent == "session") return "x." + column + " = ?1";
     }
-    for (const auto& [column, parent] : table.parents) {
-      const bool certain = std::any_of(table.columns.begin(), table.columns.end(),
-                                       [&](const auto& one) { return one.name == column && one.not_null; });
-      if (!certain || scope_of(all_, parent) != Scope::Session) continue;
-      return "x." + column + " IN (SELECT x." + column + " FROM " + parent + " x WHERE " + rows_of(parent) +
-             ")";
+    for (const LocalColumn& column : table.columns) {
+      const auto parent = table.parents.find(column.name);
+      if (!column.not_null || parent == table.parents.end() ||
+          scope_of(all_, parent->second) != Scope::Session)
+        continue;
+      return "x." + column.name + " IN (SELECT x." + column.name + " FROM " + parent->second + " x WHERE " +
+             rows_of(parent->second) + ")";
     }
     refuse_central("table " + name, "belongs to no session");
   }

@@ -87,13 +87,12 @@ std::string translated_check(const std::string& expression,
   const auto tokens = tokens_of(expression, place);
   std::string out;
   for (std::size_t i = 0; i < tokens.size(); ++i) {
-    const auto& [kind, text] = tokens[i];
+    const CheckWord kind = tokens[i].kind;
+    const std::string& text = tokens[i].text;
     const auto column =
         std::find_if(renamed.begin(), renamed.end(), [&](const auto& one) { return one.first == text; });
     std::string piece;
-    if (kind == CheckWord::Number || (kind == CheckWord::Sign && signs.contains(text))) {
-      piece = text;
-    } else if (kind == CheckWord::Text) {
+    if (kind == CheckWord::Text) {
       piece = "'" + text + "'";
     } else if (kind == CheckWord::Name && column != renamed.end()) {
       piece = "\"" + column->second + "\"";
@@ -104,7 +103,8 @@ std::string translated_check(const std::string& expression,
                tokens[i + 1].kind == CheckWord::Text) {
       const bool negative = i > 0 && tokens[i - 1].text == "NOT";
       piece = std::string(negative ? "!~ '" : "~ '") + regex_of(tokens[++i].text) + "'";
-    } else if (kind == CheckWord::Name && words.contains(text)) {
+    } else if (kind == CheckWord::Number || (kind == CheckWord::Sign && signs.contains(text)) ||
+               (kind == CheckWord::Name && words.contains(text))) {
       piece = text;
     } else {
       refuse_check(place, expression, text);
