@@ -14,6 +14,8 @@
 
 #include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/common/cutting_proxy.hpp"
 #include "tests/libstudy/central_fixture.hpp"
@@ -126,6 +128,27 @@ class Storm {
             "lab.session s "
             "ORDER BY s.session_uid COLLATE \"C\""),
         lines);
+  }
+
+  /// The report of the central database is that of the merged files (check_union() made them), but for the
+  /// name of the database and the time of the report.
+  void check_report() {
+    const std::string reader = lab_.admit("anna", study::central::Admission::LabReader);
+    std::vector<std::string> reports;
+    for (const std::string& database : {(folder_ / "all.db").string(), "service:" + reader}) {
+      const std::string file = folder_ / "report.json";
+      fs::remove(file);
+      const Ended ended = run_program({VIP_BIN_DIR "/vip-stats", "report", database, "--json", file});
+      EXPECT_EQ(ended.exit_code, 0) << ended.err;
+      std::string text = base::read_file(file, 1 << 26);
+      const auto time = base::Json::parse(text).at("date_utc").get<std::string>();
+      for (const std::string& part : {fs::path(database).filename().string(), time})
+        for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at))
+          text.erase(at, part.size());
+      reports.push_back(std::move(text));
+    }
+    EXPECT_GT(reports[0].size(), 1000u);
+    EXPECT_TRUE(reports[0] == reports[1]) << "the reports differ";
   }
 
   Counts counts;
@@ -280,6 +303,7 @@ Counts storm(unsigned seed, int rounds, bool each) {
     storm.round();
     if (each || round + 1 == rounds) storm.check();
     if (round % 20 == 19 || round + 1 == rounds) storm.check_union();
+    if (each && round + 1 == rounds) storm.check_report();
   }
   Counts done = storm.counts;
   done.cuts = storm.cuts();

@@ -13,6 +13,7 @@
 
 #include "libstudy/store/central/postgres.hpp"
 #include "tests/common/postgres_server.hpp"
+#include "tests/libstudy/central_fixture.hpp"
 
 namespace {
 
@@ -23,6 +24,7 @@ using study::pg::Transaction;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Optional;
+using test::message_of;
 
 /// A service of the administrator, for tables in its temporary schema.
 const std::string& admin() {
@@ -31,16 +33,6 @@ const std::string& admin() {
     return std::string("plain");
   }();
   return service;
-}
-
-template <class Work>
-std::string message_of(const Work& work) {
-  try {
-    work();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 TEST(CentralPostgres, RowsComeBackBitForBit) {
