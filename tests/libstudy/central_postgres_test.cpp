@@ -21,10 +21,10 @@ using study::pg::Connection;
 using study::pg::Failure;
 using study::pg::Row;
 using study::pg::Transaction;
+using study::test::message_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Optional;
-using test::message_of;
 
 /// A service of the administrator, for tables in its temporary schema.
 const std::string& admin() {
