@@ -167,16 +167,22 @@ void check_choice(const base::TomlTable& table, const Design& design, const Ques
                "write against, or a second condition");
 }
 
-/// Refuses a margin that no difference of the outcome can reach: every result would then be within it.
-void check_margin(const base::TomlTable& table, const Design& design, const Question& question,
-                  const DeclaredHypothesis& one) {
-  const double range =
-      value_of(design, question) == OutcomeValue::Mean ? question.scale_max - question.scale_min : 1;
-  if (!one.test.margin || *one.test.margin < range) return;
-  table.fail("margin",
-             "= " + base::shortest(*one.test.margin) + " is as wide as the outcome, which has a range of " +
-                 base::shortest(range) + ": every difference is within it",
-             "write a smaller margin");
+/// Refuses a margin that no difference of the outcome can exceed, since every result would be within it, and
+/// a number that the outcome can never have.
+void check_numbers(const base::TomlTable& table, const Design& design, const Question& question,
+                   const DeclaredHypothesis& one) {
+  const bool scores = value_of(design, question) == OutcomeValue::Mean;
+  const double least = scores ? question.scale_min : 0, most = scores ? question.scale_max : 1;
+  if (one.test.margin && *one.test.margin >= most - least)
+    table.fail("margin",
+               "= " + base::shortest(*one.test.margin) + " is as wide as the outcome, which has a range of " +
+                   base::shortest(most - least) + ": every difference is within it",
+               "write a smaller margin");
+  if (one.against && (*one.against < least || *one.against > most))
+    table.fail("against",
+               "= " + base::shortest(*one.against) + " is no value of the outcome, which lies between " +
+                   base::shortest(least) + " and " + base::shortest(most),
+               "write a value between these");
 }
 
 void check_levels(const base::TomlTable& table, const Tables& tables, const Design& design,
@@ -234,7 +240,7 @@ void check_fits(const base::TomlTable& table, const Tables& compare, const Proto
                    : "use \"threshold\": the procedure chooses the levels that are answered about");
   check_levels(table, compare, design, one);
   check_choice(table, design, question, one);
-  check_margin(table, design, question, one);
+  check_numbers(table, design, question, one);
 }
 
 std::string levels_toml(const DeclaredHypothesis::Levels& levels) {

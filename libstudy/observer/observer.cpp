@@ -35,8 +35,10 @@ std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> q
   if (check) check();
   std::vector<TimedAnswer> out;
   bool judged = occasion.shown.empty();
+  const bool steered = std::ranges::find(questions, steering_question_, &Question::id) != questions.end();
   for (const Question& question : questions) {
-    const bool judges = !judged && traits_of(question.kind).listed;
+    const bool judges =
+        !judged && (steered ? question.id == steering_question_ : traits_of(question.kind).listed);
     judged = judged || judges;
     const Answer answer = answer_of(*this, question, occasion, judges);
     out.push_back({answer, answering_s(question, answer, occasion), AnswerInput::Observer});

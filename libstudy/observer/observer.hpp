@@ -24,14 +24,20 @@ class Observer : public Participant {
   std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                const Occasion& occasion, Clock& clock, const Check& check) final;
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
+  /// The question whose answers steer the protocol's procedure: on a page with it, it is the one that is
+  /// answered by the model (`judges` below).
+  void set_steering_question(std::string id) { steering_question_ = std::move(id); }
 
   /// Returns one of the question's scores. Never called for a question that is not scored (Text) or that has
-  /// `accept`. `judges`: true for the first question with listed answers (AnswerKindTraits::listed) on a page
-  /// that follows a stimulus.
+  /// `accept`. `judges`: true for the steering question on a page that follows a stimulus; on a page
+  /// without it, for the first question with listed answers (AnswerKindTraits::listed).
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
   /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
   virtual bool feels() const { return false; }
+
+ private:
+  std::string steering_question_;
 };
 
 /// Random number `counter` of the stream of `key`: uniform_of() is uniform in (0, 1), normal_of() standard

@@ -302,6 +302,14 @@ Design read_factor_design(const base::TomlTable& root, const base::TomlTable& ta
     design.cells.push_back(cell_of(root, keys, duration_s));
     design.cells.back().levels = levels;
   }
+  for (const Cell& cell : design.cells) {
+    const auto& profile = cell.setting.profile;
+    if (profile && profile->kind == ProfileKind::Hitches && profile->period_s > duration_s)
+      table.fail("duration_s",
+                 "= " + shown(duration_s) + " is shorter than the period of " + shown(profile->period_s) +
+                     " s of a profile with hitches, so that no hitch may be shown",
+                 "use a longer duration_s or a shorter period_s");
+  }
   const auto effects = used_effects(design.cells);
   design.effects = effect_sets_of(table, effects, [&](std::size_t i) {
     root.fail("stimulus",

@@ -114,8 +114,7 @@ std::string estimate_of(const Field& one) {
 
 std::string sizes(const Field& one) {
   if (!one["n_a"].is_number()) return "\xE2\x80\x93";
-  const bool groups = one["test"].words() == "welch_t" || one["test"].words() == "student_t";
-  return !groups && one["n_a"].number() == one["n_b"].number()
+  return !one["groups"].yes() && one["n_a"].number() == one["n_b"].number()
              ? count(one["n_a"])
              : count(one["n_a"]) + " and " + count(one["n_b"]);
 }

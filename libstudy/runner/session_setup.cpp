@@ -267,7 +267,9 @@ SessionSetup make_session_setup(const RunOptions& options, const Protocol& proto
                                                 std::move(bakes), std::move(settings));
   if (!options.observer.empty()) {
     setup.features = make_features(options, protocol, *setup.stimuli);
-    setup.participant = make_observer(options.observer, *setup.features);
+    auto observer = make_observer(options.observer, *setup.features);
+    if (protocol.design.procedure) observer->set_steering_question(protocol.design.procedure->question);
+    setup.participant = std::move(observer);
   }
   return setup;
 }

@@ -99,6 +99,7 @@ Result<TestOutcome> run_group_t(const DeclaredTest& test, std::span<const ExactM
   TestOutcome out = t_outcome(*got);
   out.n_a = static_cast<int>(got->n_x);
   out.n_b = static_cast<int>(got->n_y);
+  out.groups = true;
   out.effect = "d_s";
   out.effect_size = got->cohen_ds;
   out.effect_ci = got->cohen_ds_ci;
@@ -208,6 +209,19 @@ void count_people(TestOutcome& out, const AnswerRows& rows) {
     people[rows.condition[i] == 0 ? 0 : 1].insert(rows.participant[i]);
   out.n_a = static_cast<int>(people[0].size());
   out.n_b = static_cast<int>(people[1].size());
+  out.groups = std::ranges::none_of(people[0], [&](int person) { return people[1].contains(person); });
+}
+
+/// What a linear mixed model estimates as zero. In a comparison of groups each participant has one condition,
+/// so that a participant's part by condition cannot be told from the participant's own.
+std::string singular_note(const LinearMixedFit& fit, bool groups) {
+  const bool level = fit.singular.find("level") != std::string::npos,
+             condition = fit.singular.find("by method") != std::string::npos;
+  if (groups) return level && condition ? "the variance between participants is estimated as zero" : "";
+  if (level && condition)
+    return "the variances between participants, in level and by condition, are estimated as zero";
+  if (level) return "the variance between participants is estimated as zero";
+  return condition ? "the variance of participants by condition is estimated as zero" : "";
 }
 
 Predictor of_a(const AnswerRows& rows) {
@@ -235,7 +249,7 @@ Result<TestOutcome> run_linear_mixed(const DeclaredTest& test, const AnswerRows&
   out.estimate = got.estimate;
   out.ci = one_side_of(got.ci, test.alternative);
   count_people(out, rows);
-  if (!fit->singular.empty()) out.note = fit->singular + " is estimated as zero";
+  out.note = singular_note(*fit, out.groups);
   return out;
 }
 

@@ -69,6 +69,7 @@ struct TestOutcome {
   std::optional<double> effect_size = {};
   std::optional<std::array<double, 2>> effect_ci = {};
   int n_a = 0, n_b = 0;  ///< participants used; equal for tests of differences
+  bool groups = false;   ///< true if no participant has both conditions
   int n_missing = 0;     ///< participants left out because a value is missing
   std::string note = {};
 };

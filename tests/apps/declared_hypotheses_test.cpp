@@ -106,6 +106,7 @@ TEST(DeclaredHypotheses, WhatDoesNotFitTheProtocolIsRefusedAtItsPlace) {
   expect("family = \"hitches\"", "adjust = \"holm\"", "needs a family");
   expect("\"greater\"", "\"two-sided\"\nmargin = 1", "needs a side");
   expect("\"greater\"", "\"greater\"\nmargin = 1", "every difference is within it");
+  expect(", {hitch = \"none\"}]", "]\nagainst = 7", "is no value of the outcome");
   expect("{hitch = \"h50\"}, {hitch = \"none\"}", "{content = \"dam\"}, {content = \"drop\"}",
          "different people see the two conditions");
   expect("hitch = \"none\"}", "content = \"dam\"}", "names other factors");

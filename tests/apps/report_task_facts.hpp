@@ -20,7 +20,7 @@ inline std::vector<Fact> of_the_pilot() {
     return Fact{1, word, set("/pilot/raters/" + part + "/text", ""), set("/pilot/raters", raters)};
   };
   return {
-      {19, "ratings", failed},
+      {20, "ratings", failed},
       {1, "No fit", set("/pilot/status", "ok"), failed},
       {1, "For the solver", set("/pilot/doubts", {"a doubt"})},
       {1, "Not for a solver", none("/pilot/doubts"), set("/pilot/doubts", {"a doubt"})},

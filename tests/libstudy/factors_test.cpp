@@ -203,6 +203,7 @@ TEST(Factors, RefuseWhatTheyDoNotUnderstand) {
       {"method = \"HiRes\"\n", "", "names no method, and no factor sets it"},
       {"n_star = \"8k\"", "n_star = \"many\"", "is no number of particles"},
       {"hitch_ms = 50", "hitch_ms = 5", "is shorter than the"},
+      {"duration_s = 4", "duration_s = 0.5", "no hitch may be shown"},
       {"profile = \"hitches\"", "profile = \"hitch\"", "hitches"},
       {"hitch_ms = 50", "hitch_ms = 50, low_fps = 3", "low_fps"},
       {"duration_s = 4", "duration_s = 4\ntiming = \"equal\"", "timing"},

@@ -221,6 +221,29 @@ TEST(MakeObserver, SpecificationsAreWrittenBackInFull) {
     EXPECT_THROW(observer_of(bad), base::Error) << bad;
 }
 
+TEST(Observers, TheQuestionThatSteersAProcedureIsAnsweredByTheModel) {
+  Question first = choice_of_two(), second = choice_of_two();
+  first.id = "other";
+  second.id = "steers";
+  const std::vector<Question> page{first, second};
+  VirtualClock clock;
+  const auto plain = observer_of("ptpe:a=31,b=0.035");
+  const auto steered = observer_of("ptpe:a=31,b=0.035");
+  steered->set_steering_question("steers");
+  int as_first = 0, as_steering = 0;
+  for (int person = 0; person < 50; ++person) {
+    const Occasion occasion = shown(30, 0, person, 1);
+    const auto by_order = plain->ask({}, page, occasion, clock, {});
+    const auto by_name = steered->ask({}, page, occasion, clock, {});
+    const Question alone[] = {second};
+    const auto model = plain->ask({}, alone, occasion, clock, {});
+    as_steering += by_name[1].answer.score == model[0].answer.score;
+    as_first += by_order[1].answer.score == model[0].answer.score;
+  }
+  EXPECT_EQ(as_steering, 50);
+  EXPECT_LT(as_first, 50);
+}
+
 TEST(Observers, TakePartAndAnswerWithinTheRules) {
   Question consent = choice_of_two(), screening = seven_points(), words, age = seven_points();
   consent.accept = {2, 2};

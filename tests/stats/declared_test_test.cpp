@@ -162,6 +162,14 @@ TEST(DeclaredTest, ModelsAreTheValidatedFits) {
   EXPECT_DOUBLE_EQ(mixed->p, want.p);
   EXPECT_DOUBLE_EQ(mixed->estimate, want.estimate);
   EXPECT_EQ(mixed->n_a, 12);
+  EXPECT_FALSE(mixed->groups);
+  AnswerRows apart = rows;
+  for (std::size_t i = 0; i < apart.participant.size(); ++i) apart.participant[i] += 12 * apart.condition[i];
+  const auto groups = run_declared({TestKind::LinearMixed}, apart);
+  ASSERT_TRUE(groups) << groups.reason();
+  EXPECT_TRUE(groups->groups);
+  EXPECT_EQ(groups->n_b, 12);
+  EXPECT_EQ(groups->note, "") << "a group's people have one condition each: no part by condition is missing";
   const auto above = run_declared({TestKind::LinearMixed, Alternative::Greater}, rows);
   EXPECT_DOUBLE_EQ(above->p, want.p / 2);
   EXPECT_TRUE(std::isinf((*above->ci)[1]));

@@ -118,8 +118,8 @@ Json tested_json(const TestedHypothesis& one, double alpha, bool preregistered) 
   json["ci_confidence"] = ci_confidence(*one.declared);
   if (!one.outcome) {
     for (const char* name :
-         {"n_a", "n_b", "n_missing", "statistic", "statistic_value", "df", "p", "p_adjusted", "estimated",
-          "estimate", "ci", "effect", "effect_size", "effect_ci"})
+         {"n_a", "n_b", "n_missing", "groups", "statistic", "statistic_value", "df", "p", "p_adjusted",
+          "estimated", "estimate", "ci", "effect", "effect_size", "effect_ci"})
       json[name] = Json();
     json["holds"] = false;
     json["reason"] = one.outcome.reason();
@@ -129,6 +129,7 @@ Json tested_json(const TestedHypothesis& one, double alpha, bool preregistered) 
   json["n_a"] = got.n_a;
   json["n_b"] = got.n_b;
   json["n_missing"] = got.n_missing;
+  json["groups"] = got.groups;
   json["statistic"] = got.statistic;
   json["statistic_value"] = json_number(got.value);
   json["df"] = json_number(got.df);
