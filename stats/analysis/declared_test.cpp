@@ -212,8 +212,9 @@ void count_people(TestOutcome& out, const AnswerRows& rows) {
   out.groups = std::ranges::none_of(people[0], [&](int person) { return people[1].contains(person); });
 }
 
-/// What a linear mixed model estimates as zero. In a comparison of groups each participant has one condition,
-/// so that a participant's part by condition cannot be told from the participant's own.
+/// A note that names the variances which a linear mixed model estimates as zero; empty if there are none. In
+/// a comparison of groups each participant has one condition, so that a participant's part by condition
+/// cannot be told from the participant's own.
 std::string singular_note(const LinearMixedFit& fit, bool groups) {
   const bool level = fit.singular.find("level") != std::string::npos,
              condition = fit.singular.find("by method") != std::string::npos;

@@ -21,8 +21,8 @@ std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating
 /// Position of a trial in its session, from -1/2 (first trial) to 1/2 (last trial).
 double place_of(const PilotRating& rating, const std::pair<double, double>& session);
 
-/// The score of each rating by the surface without the term of the place, up to a constant for each
-/// participant. Scores far from the surface weigh less (Huber's weights).
+/// The score that the surface predicts for each rating, without the change over the session and up to a
+/// constant for each participant. Scores far from the surface weigh less (Huber's weights).
 std::vector<double> surface_scores(std::span<const PilotRating> ratings);
 
 /// The jackknife's pseudo-values over participants of the surface's coefficient of the place. Their mean is

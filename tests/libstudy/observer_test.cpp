@@ -222,23 +222,17 @@ TEST(MakeObserver, SpecificationsAreWrittenBackInFull) {
 }
 
 TEST(Observers, TheQuestionThatSteersAProcedureIsAnsweredByTheModel) {
-  Question first = choice_of_two(), second = choice_of_two();
-  first.id = "other";
-  second.id = "steers";
-  const std::vector<Question> page{first, second};
+  std::vector<Question> page{choice_of_two(), choice_of_two()};
+  page[1].id = "steers";
   VirtualClock clock;
-  const auto plain = observer_of("ptpe:a=31,b=0.035");
-  const auto steered = observer_of("ptpe:a=31,b=0.035");
+  const auto plain = observer_of("ptpe:a=31,b=0.035"), steered = observer_of("ptpe:a=31,b=0.035");
   steered->set_steering_question("steers");
   int as_first = 0, as_steering = 0;
   for (int person = 0; person < 50; ++person) {
     const Occasion occasion = shown(30, 0, person, 1);
-    const auto by_order = plain->ask({}, page, occasion, clock, {});
-    const auto by_name = steered->ask({}, page, occasion, clock, {});
-    const Question alone[] = {second};
-    const auto model = plain->ask({}, alone, occasion, clock, {});
-    as_steering += by_name[1].answer.score == model[0].answer.score;
-    as_first += by_order[1].answer.score == model[0].answer.score;
+    const auto model = plain->ask({}, {&page[1], 1}, occasion, clock, {})[0].answer.score;
+    as_steering += steered->ask({}, page, occasion, clock, {})[1].answer.score == model;
+    as_first += plain->ask({}, page, occasion, clock, {})[1].answer.score == model;
   }
   EXPECT_EQ(as_steering, 50);
   EXPECT_LT(as_first, 50);

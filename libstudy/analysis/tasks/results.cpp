@@ -241,7 +241,7 @@ std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>&
 }
 
 /// Entries of not_analysed for the hypotheses that the plan declares about a task without an analysis here.
-/// The shipped hypotheses, which stand in for a plan that declares none, get no entry.
+/// A plan that declares no hypotheses about methods gets no entry, although the shipped ones are then tested.
 Json claims_without_task(const ResultsRequest& request, const std::vector<TaskPart>& parts) {
   Json list = Json::array();
   for (const TaskKind task : {TaskKind::Task1, TaskKind::Task2}) {
