@@ -39,8 +39,11 @@ set(CPACK_VIP_NATIVE ${VIP_NATIVE})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# libepoxy opens libEGL and libGL at run time, so that dpkg-shlibdeps does not find them.
+# libepoxy opens libEGL and libGL at run time, and the programs open libpq, so that dpkg-shlibdeps does not find them.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1")
+if(PostgreSQL_FOUND)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libpq5")
+endif()
 # Recommended packages: software OpenGL for machines without a GPU driver, the font of a participant's pages,
 # and the loader for OpenXR headsets.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core, libopenxr-loader1")

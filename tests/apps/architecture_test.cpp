@@ -83,7 +83,7 @@ const std::vector<Rule> rules{
     {{"libstudy/"}, {"apps/", "libstudy/"}},
     {{"tests/"}, {}},
     {{"sqlite3"}, {"libstudy/store/"}},
-    {{"libpq"}, {"libstudy/store/central/postgres.cpp"}},
+    {{"libpq"}, {"libstudy/store/central/libpq.hpp"}},
     {{"stats/base/"}, {"apps/", "libsim/", "libstudy/", "stats/base/", "stats/figures/"}},
     {{"stats/figures/"}, {"apps/", "libsim/measure/", "libstudy/", "stats/figures/"}},
     {{"toml"}, {"stats/base/toml_parser.hpp"}},

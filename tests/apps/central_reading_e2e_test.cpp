@@ -170,5 +170,18 @@ TEST_F(CentralProgramsSlow, SlotsComeFromTheServerAndOfflineFromTheBlock) {
               HasSubstr("is not a name"));
 }
 
+TEST(CentralWithoutLibpqE2e, OnlyTheCentralDatabaseIsMissing) {
+  const TemporaryFolder folder;
+  base::write_file_atomically(folder / "libpq.so.5", "no library");
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    return run_program(arguments, [&] { ::setenv("LD_LIBRARY_PATH", folder.path().c_str(), 1); });
+  };
+  const Ended version = run({vip_study, "--version"});
+  EXPECT_EQ(version.exit_code, 0) << version.err;
+  const Ended central = run({vip_study, "status", "--db", "service:lab"});
+  EXPECT_EQ(central.exit_code, 1);
+  EXPECT_THAT(central.err, AllOf(HasSubstr("libpq.so.5"), HasSubstr("mend: install libpq5")));
+}
+
 }  // namespace
 }  // namespace apps::test

@@ -1,6 +1,5 @@
 #include "libstudy/store/central/postgres.hpp"
 
-#include <libpq-fe.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "libstudy/store/central/libpq.hpp"
 #include "stats/base/text.hpp"
 
 namespace study::pg {
@@ -42,8 +42,8 @@ std::string one_line(const std::string& message) {
 
 /// The option of an open connection, from service file or environment; empty: not set.
 std::string option_of(PGconn* handle, const char* keyword) {
-  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(PQconninfo(handle),
-                                                                               PQconninfoFree);
+  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(libpq().conninfo(handle),
+                                                                               libpq().conninfo_free);
   for (const PQconninfoOption* one = options.get(); one && one->keyword; ++one) {
     if (std::string(one->keyword) == keyword) return one->val ? one->val : "";
   }
@@ -59,7 +59,7 @@ int connect_timeout_of(PGconn* handle) {
 bool wait_for_socket(PGconn* handle, short events, steady_clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
   if (left <= 0) return false;
-  pollfd socket{PQsocket(handle), events, 0};
+  pollfd socket{libpq().socket(handle), events, 0};
   ::poll(&socket, 1, static_cast<int>(left));
   return true;
 }
@@ -70,7 +70,7 @@ bool complete_connection(PGconn* handle) {
   auto step = PGRES_POLLING_WRITING;
   while (step != PGRES_POLLING_OK && step != PGRES_POLLING_FAILED) {
     if (!wait_for_socket(handle, step == PGRES_POLLING_READING ? POLLIN : POLLOUT, deadline)) return false;
-    step = PQconnectPoll(handle);
+    step = libpq().connect_poll(handle);
   }
   return true;
 }
@@ -79,7 +79,7 @@ bool complete_connection(PGconn* handle) {
 void notice_cut_networks(PGconn* handle) {
   sockaddr_storage address{};
   socklen_t length = sizeof address;
-  const int socket = PQsocket(handle);
+  const int socket = libpq().socket(handle);
   if (::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) != 0) return;
   if (address.ss_family != AF_INET && address.ss_family != AF_INET6) return;
   const auto set = [&](int option, unsigned value) {
@@ -94,7 +94,7 @@ void notice_cut_networks(PGconn* handle) {
 }
 
 std::string field(const PGresult* result, int code) {
-  const char* text = PQresultErrorField(result, code);
+  const char* text = libpq().result_error_field(result, code);
   return text ? text : "";
 }
 
@@ -154,29 +154,31 @@ void split_line(std::string_view line, Row& row) {
 
 struct Connection::Link {
   PGconn* handle = nullptr;
-  ~Link() { PQfinish(handle); }
+  ~Link() {
+    if (handle) libpq().finish(handle);
+  }
 };
 
 struct Connection::Answer {
   std::unique_ptr<PGresult, void (*)(PGresult*)> result;
-  explicit Answer(PGresult* given) : result(given, PQclear) {}
+  explicit Answer(PGresult* given) : result(given, libpq().clear) {}
 };
 
 Connection::Connection(const std::string& service) : service_(service), link_(std::make_unique<Link>()) {
   check_service_name(service);
   const char* keywords[] = {"service", "fallback_application_name", "client_encoding", nullptr};
   const char* values[] = {service.c_str(), "vip-lab", "UTF8", nullptr};
-  link_->handle = PQconnectStartParams(keywords, values, 0);
+  link_->handle = libpq().connect_start_params(keywords, values, 0);
   if (!link_->handle) throw std::bad_alloc();
-  PQsetNoticeProcessor(
+  libpq().set_notice_processor(
       link_->handle, [](void*, const char*) {}, nullptr);
-  const bool in_time = PQstatus(link_->handle) == CONNECTION_BAD || complete_connection(link_->handle);
+  const bool in_time = libpq().status(link_->handle) == CONNECTION_BAD || complete_connection(link_->handle);
   if (!in_time) {
     throw Failure(service, "no answer within " + std::to_string(connect_timeout_of(link_->handle)) + " s",
                   "check network, host and port of the service; connect_timeout sets another time", "", true);
   }
-  if (PQstatus(link_->handle) != CONNECTION_OK) {
-    const std::string message = one_line(PQerrorMessage(link_->handle));
+  if (libpq().status(link_->handle) != CONNECTION_OK) {
+    const std::string message = one_line(libpq().error_message(link_->handle));
     const bool unknown = message.find("definition of service") != std::string::npos;
     throw Failure(service, message,
                   unknown ? "add the section [" + service +
@@ -196,20 +198,21 @@ Connection::Connection(const std::string& service) : service_(service), link_(st
 Connection::~Connection() = default;
 
 void Connection::fail() const {
-  throw Failure(service_, one_line(PQerrorMessage(link_->handle)), mend_of("", true), "", true);
+  throw Failure(service_, one_line(libpq().error_message(link_->handle)), mend_of("", true), "", true);
 }
 
 Connection::Answer Connection::check(Answer answer) const {
   const PGresult* result = answer.result.get();
   if (!result) fail();
-  const auto status = PQresultStatus(result);
+  const auto status = libpq().result_status(result);
   if (status != PGRES_FATAL_ERROR && status != PGRES_BAD_RESPONSE) return answer;
   const std::string state = field(result, PG_DIAG_SQLSTATE);
   // The status of the connection can still be good: libpq sees the end at its next statement. Then no state
   // came from the server, or 57P0x, with which it ends a session.
-  const bool lost = PQstatus(link_->handle) == CONNECTION_BAD || state.empty() || state.starts_with("57P0");
+  const bool lost =
+      libpq().status(link_->handle) == CONNECTION_BAD || state.empty() || state.starts_with("57P0");
   std::string problem = field(result, PG_DIAG_MESSAGE_PRIMARY);
-  if (problem.empty()) problem = one_line(PQresultErrorMessage(result));
+  if (problem.empty()) problem = one_line(libpq().result_error_message(result));
   throw Failure(service_, one_line(problem), mend_of(state, lost), state, lost);
 }
 
@@ -223,23 +226,25 @@ Rows Connection::run(const std::string& sql, const std::vector<Field>& values) {
     texts.push_back(value ? value->c_str() : nullptr);
     if (value) bytes_sent_ += static_cast<std::int64_t>(value->size());
   }
-  const Answer answer = check(Answer(PQexecParams(link_->handle, sql.c_str(), static_cast<int>(texts.size()),
-                                                  nullptr, texts.data(), nullptr, nullptr, 0)));
+  const Answer answer =
+      check(Answer(libpq().exec_params(link_->handle, sql.c_str(), static_cast<int>(texts.size()), nullptr,
+                                       texts.data(), nullptr, nullptr, 0)));
   const PGresult* result = answer.result.get();
   Rows rows;
-  rows.changed_ = std::atoll(PQcmdTuples(const_cast<PGresult*>(result)));
-  for (int i = 0; i < PQntuples(result); ++i) {
+  rows.changed_ = std::atoll(libpq().cmd_tuples(const_cast<PGresult*>(result)));
+  for (int i = 0; i < libpq().ntuples(result); ++i) {
     Row& row = rows.rows_.emplace_back();
-    for (int j = 0; j < PQnfields(result); ++j) {
-      const auto length = static_cast<std::size_t>(PQgetlength(result, i, j));
-      row.push_back(PQgetisnull(result, i, j) ? Field()
-                                              : Field(std::string(PQgetvalue(result, i, j), length)));
+    for (int j = 0; j < libpq().nfields(result); ++j) {
+      const auto length = static_cast<std::size_t>(libpq().getlength(result, i, j));
+      row.push_back(libpq().getisnull(result, i, j)
+                        ? Field()
+                        : Field(std::string(libpq().getvalue(result, i, j), length)));
     }
   }
   return rows;
 }
 
-void Connection::script(const std::string& sql) { check(Answer(PQexec(link_->handle, sql.c_str()))); }
+void Connection::script(const std::string& sql) { check(Answer(libpq().exec(link_->handle, sql.c_str()))); }
 
 std::int64_t Connection::insert(const std::string& table, const std::vector<ColumnType>& columns,
                                 const std::vector<Row>& rows, const std::string& tail) {
@@ -256,31 +261,32 @@ std::int64_t Connection::insert(const std::string& table, const std::vector<Colu
 }
 
 void Connection::copy_out(const std::string& sql, const std::function<void(const Row&)>& take) {
-  check(Answer(PQexec(link_->handle, sql.c_str())));
+  check(Answer(libpq().exec(link_->handle, sql.c_str())));
   Row row;
   char* line = nullptr;
   int length = 0;
-  while ((length = PQgetCopyData(link_->handle, &line, 0)) > 0) {
-    const std::unique_ptr<char, void (*)(void*)> kept(line, PQfreemem);
+  while ((length = libpq().get_copy_data(link_->handle, &line, 0)) > 0) {
+    const std::unique_ptr<char, void (*)(void*)> kept(line, libpq().freemem);
     split_line({line, static_cast<std::size_t>(length)}, row);
     try {
       take(row);
     } catch (...) {
       // The rest of the rows is not read, so that the connection is of no more use.
-      PQfinish(std::exchange(link_->handle, nullptr));
+      libpq().finish(std::exchange(link_->handle, nullptr));
       throw;
     }
   }
   if (length == -2) fail();
-  Answer answer(PQgetResult(link_->handle));
-  while (PGresult* rest = PQgetResult(link_->handle)) PQclear(rest);
+  Answer answer(libpq().get_result(link_->handle));
+  while (PGresult* rest = libpq().get_result(link_->handle)) libpq().clear(rest);
   check(std::move(answer));
 }
 
 void Connection::cancel() const {
-  const std::unique_ptr<PGcancel, void (*)(PGcancel*)> request(PQgetCancel(link_->handle), PQfreeCancel);
+  const std::unique_ptr<PGcancel, void (*)(PGcancel*)> request(libpq().get_cancel(link_->handle),
+                                                               libpq().free_cancel);
   char problem[256] = "";
-  if (request) PQcancel(request.get(), problem, sizeof problem);
+  if (request) libpq().cancel(request.get(), problem, sizeof problem);
 }
 
 Transaction::Transaction(Connection& connection, const std::string& begin) : connection_(&connection) {
