@@ -3,9 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "libstudy/pacing/truncated_normal.hpp"
@@ -140,6 +146,38 @@ void check_constant(const Problem& problem) {
                "lower fps_min and raise max_interval_ms, or raise fps_max");
 }
 
+/// Solutions by mean, standard deviation, lowest and highest rate, kind of mean and number of rates. Most
+/// problems occur again, in each session of a study.
+class Solutions {
+ public:
+  std::optional<std::vector<double>> find(const Problem& problem) {
+    const std::lock_guard guard(turn_);
+    const auto at = known_.find(key_of(problem));
+    return at == known_.end() ? std::nullopt : std::optional(at->second);
+  }
+  void keep(const Problem& problem, const std::vector<double>& rates) {
+    const std::lock_guard guard(turn_);
+    if (known_.size() >= most) known_.clear();
+    known_[key_of(problem)] = rates;
+  }
+
+ private:
+  using Key = std::array<std::uint64_t, 6>;
+  static constexpr std::size_t most = 1000;
+  static Key key_of(const Problem& problem) {
+    const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+    return {bits(problem.setting.mean),
+            bits(problem.setting.sd),
+            bits(problem.low),
+            bits(problem.high),
+            static_cast<std::uint64_t>(problem.mean),
+            problem.n};
+  }
+
+  std::mutex turn_;
+  std::map<Key, std::vector<double>> known_;
+};
+
 }  // namespace
 
 double mean_rate(const std::vector<double>& rates, FpsMean mean) {
@@ -163,6 +201,8 @@ std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& ru
                     problem.low, problem.high),
         "lower fps_min and raise max_interval_ms, or raise fps_max");
   }
+  static Solutions solutions;
+  if (const auto known = solutions.find(problem)) return *known;
   auto rates = std::isfinite(problem.high) ? solve_capped(problem) : solve_open(problem);
   const double mean_error = std::abs(problem.mean_of(rates) / setting.mean - 1);
   const double sd_error = std::abs(population_sd(rates) / setting.sd - 1);
@@ -171,6 +211,7 @@ std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& ru
                              std::max(mean_error, sd_error)),
                  "choose a mean further from fps_min and fps_max, or another sd");
   }
+  solutions.keep(problem, rates);
   return rates;
 }
 

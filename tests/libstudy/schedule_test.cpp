@@ -156,6 +156,33 @@ TEST(FrameOrder, FollowsTheSeed) {
   }
 }
 
+// The program keeps the rates that it found for a problem.
+TEST(ExactRates, OfProblemsThatDifferInOneNumberAreTheirOwn) {
+  std::vector<PacingRules> rules(4);
+  rules[1].mean = FpsMean::Arithmetic;
+  rules[2].fps_min = 15;
+  rules[3].fps_max = 60;
+  const std::vector<FpsSetting> settings{{30, 5, 10}, {30, 5, 5}, {30, 6, 10}, {30.04, 5, 10}};
+  std::vector<std::vector<double>> found;
+  for (const int round : {0, 1}) {
+    std::size_t at = 0;
+    for (const PacingRules& rule : rules) {
+      for (const FpsSetting& setting : settings) {
+        const auto rates = study::exact_rates(setting, rule);
+        ASSERT_EQ(rates.size(), static_cast<std::size_t>(study::frame_count(setting)));
+        EXPECT_NEAR(study::mean_rate(rates, rule.mean), setting.mean, 1e-6);
+        EXPECT_GE(rates.front(), rule.fps_min);
+        EXPECT_LE(rates.back(), rule.fps_max.value_or(INFINITY));
+        if (round == 0) {
+          for (const auto& other : found) EXPECT_NE(rates, other);
+          found.push_back(rates);
+        }
+        EXPECT_EQ(rates, found.at(at++));
+      }
+    }
+  }
+}
+
 TEST(FrameOrder, Ar1ReachesTheWishedCorrelation) {
   for (const double wished : {-0.9, -0.4, 0.0, 0.3, 0.8}) {
     PacingRules rules;
