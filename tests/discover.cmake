@@ -1,6 +1,7 @@
 # cmake -P, after a test program is linked: writes the program's ctest entries to the file ENTRIES. A suite with the label `unit`
 # is one entry, because its tests share what they prepare, or take less time than starting the program and ctest's bookkeeping for
-# each test; GoogleTest's output names the test that failed. A suite in `sharing` is one entry too. Each test of the other suites
+# each test; GoogleTest's output names the test that failed. A suite in `sharing` is one entry too, and all suites of study_test on
+# the central database are one, because they share a PostgreSQL server. Each test of the other suites
 # is an entry of its own, so that tests of one suite run side by side. A test in real time counts as two processors, so that fewer
 # tests run beside it. Tests that slow_tests.txt lists get the label slow and an entry of their own.
 cmake_minimum_required(VERSION 3.25)
@@ -17,7 +18,8 @@ foreach(line IN LISTS lines)
   string(REGEX REPLACE "^[^ ]+ ([^ ]+) .*" "\\1" name "${line}")
   list(APPEND slow ${name})
 endforeach()
-set(sharing TaskCommandsE2e)  # its tests share a database, which takes longer to make than they do
+# The tests of these suites share what takes longer to make than they do: a database, an installation, the texts of every --help.
+set(sharing AdviceE2e InstallE2e TaskCommandsE2e)
 set(met "")
 set(entries "")
 set(suites "")
@@ -45,14 +47,22 @@ foreach(line IN LISTS listed)
     if(label STREQUAL unit OR subject IN_LIST sharing)
       set(together TRUE)
     endif()
+    set(tests "${subject}.*:*/${subject}.*")
+    set(others ${slow})
+    if(together AND own STREQUAL study_test AND subject MATCHES "^Central")
+      set(subject Central)
+      set(tests "Central*.*")
+      list(FILTER others INCLUDE REGEX "^Central")
+      list(APPEND others "Central*Slow.*")
+    else()
+      list(FILTER others INCLUDE REGEX "(^|/)${subject}\\.")
+    endif()
     if(together AND NOT subject IN_LIST suites)
       list(APPEND suites ${subject})
-      set(others ${slow})
-      list(FILTER others INCLUDE REGEX "(^|/)${subject}\\.")
       list(TRANSFORM others PREPEND ":")
       string(REGEX REPLACE "^;?:" "-" others "${others}")
       string(REPLACE ";" "" others "${others}")
-      add_entry(${subject} "${subject}.*:*/${subject}.*${others}" ${label} 900)
+      add_entry(${subject} "${tests}${others}" ${label} 900)
     endif()
   elseif(line MATCHES "^  ([^ ]+)$")
     set(name ${suite}.${CMAKE_MATCH_1})
