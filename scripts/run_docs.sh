@@ -76,7 +76,8 @@ check_names() {
     [ -x "$root/$name" ] || fail "names a script that does not exist: $name"
   done
 }
-count_tests() { ctest --test-dir "$build" -N -R "$1" | sed -n 's/^Total Tests: //p'; }
+tests=$(ctest --test-dir "$build" -N | sed -n 's/^ *Test *#[0-9]*: //p')
+count_tests() { grep -cE -- "$1" <<<"$tests" || true; }
 
 check_test() {  # check_test NAME: NAME must be a file of the project or a test of the build
   [ -e "$root/$1" ] || [ "$(count_tests "^${1//./\\.}\$")" = 1 ] || [ "$(count_tests _NOT_BUILT)" != 0 ] ||
