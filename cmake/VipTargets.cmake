@@ -138,11 +138,11 @@ function(vip_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# vip_test_units(TARGET [APART sources...]) compiles the *_test.cpp files of each folder in units of
-# up to 24 files, which unit.cmake writes. Unlike the sources of vip_unity(), these files may
-# define equal names. A source with compile options of its own is compiled separately. List after APART each
-# source that defines something that a header declares, such as a printer for GoogleTest. Call
-# vip_test_units() after the properties of the sources are set.
+# vip_test_units(TARGET [APART sources...]) compiles the *_test.cpp files of a target in units of up to 24
+# files, which unit.cmake writes. Unlike the sources of vip_unity(), these files may define equal names. A
+# source with compile options of its own is compiled separately; sources with COMPILE_DEFINITIONS share units
+# with those of their folder. List after APART each source that defines something that a header declares, such
+# as a printer for GoogleTest. Call vip_test_units() after the properties of the sources are set.
 function(vip_test_units target)
   if(NOT VIP_UNITY OR NOT TARGET ${target})
     return()
@@ -164,6 +164,10 @@ function(vip_test_units target)
     endif()
     get_filename_component(folder ${source} DIRECTORY)
     file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    get_source_file_property(definitions ${source} COMPILE_DEFINITIONS)
+    if(NOT definitions)
+      string(REGEX REPLACE "^([^/]+/[^/]+)/.*" "\\1" folder "${folder}")
+    endif()
     string(MAKE_C_IDENTIFIER "${folder}" group)
     list(APPEND groups ${group})
     list(APPEND sources_${group} ${source})
