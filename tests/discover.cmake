@@ -30,9 +30,13 @@ function(add_entry name filter label timeout)
   if(name MATCHES "Real(Time|Clock)")
     set(processors 2)
   endif()
+  set(cost 0)
+  if(name STREQUAL Central OR name IN_LIST sharing)
+    set(cost 20)  # begun early, because they take longest
+  endif()
   string(APPEND entries "add_test([=[${name}]=] ${PROGRAM} [=[--gtest_filter=${filter}]=] --gtest_also_run_disabled_tests)\n"
          "set_tests_properties([=[${name}]=] PROPERTIES WORKING_DIRECTORY [=[${FOLDER}]=] LABELS ${label} TIMEOUT ${timeout}"
-         " ENVIRONMENT OMP_WAIT_POLICY=passive PROCESSORS ${processors} SKIP_REGULAR_EXPRESSION [=[${skipped}]=])\n")
+         " ENVIRONMENT OMP_WAIT_POLICY=passive PROCESSORS ${processors} COST ${cost} SKIP_REGULAR_EXPRESSION [=[${skipped}]=])\n")
   set(entries "${entries}" PARENT_SCOPE)
 endfunction()
 foreach(line IN LISTS listed)

@@ -101,7 +101,7 @@ TEST_F(InstallE2e, ViewFindsSceneAndShaders) {
 
 TEST_F(InstallE2e, BenchAndStatsStart) {
   const Ended bench = run({"vip-bench", "frame", "data/scenes/martin_moyce.toml", "--n-star", "64",
-                           "--backend", "cpu", "--frames", "1", "--warm-up", "0"});
+                           "--backend", "cpu", "--frames", "1", "--warm-up", "0", "--size", "64x36"});
   EXPECT_EQ(bench.exit_code, 0) << bench.err;
   const Ended peers = run({"vip-bench", "frame", "--peers", "--backend", "cpu", "--frames", "1"});
   EXPECT_EQ(peers.exit_code, 0) << peers.err;

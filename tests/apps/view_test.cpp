@@ -122,7 +122,7 @@ TEST_F(ViewE2e, ExplainsItsSchedule) {
 TEST_F(ViewE2e, LeavesOutTheEffectsThatAreTurnedOff) {
   NEEDS_EFFECTS;
   const std::string run =
-      "--headless data/scenes/splash.toml --backend cpu --n-star 64 --frames 1 --explain ";
+      "--headless data/scenes/splash.toml --backend cpu --n-star 64 --frames 1 --size 64x48 --explain ";
   const auto all = view(run);
   ASSERT_EQ(all.exit_code, 0) << all.out;
   EXPECT_NE(all.out.find("the scene lists rate_per_s"), std::string::npos) << all.out;
