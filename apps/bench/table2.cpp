@@ -45,7 +45,8 @@ struct Table2Options : measure::TableOptions {
 /// Times of one cell, ms, and numbers of particles: one value per frame without the warm-up frames.
 /// saliency_ms, levels_ms, activation_ms and solve_ms come from a second run of the same frames.
 struct CellRun {
-  std::vector<double> particles, step_ms, render_ms, frame_ms;
+  std::vector<double> particles, solved, step_ms, render_ms, frame_ms;
+  double splits = 0, merges = 0;  ///< per frame
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
   /// Mean time of passing the picture to saliency, ms. Contained in step_ms, but not in frame_ms.
   double seen_ms = 0;
@@ -73,6 +74,7 @@ CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& c
   sim::Simulation& fluid = *made;
   measure::Onlooker eye(scene.scene, picture_size);
   CellRun run;
+  sim::LevelEvents before;
   for (int frame = 1; frame <= options.frames; ++frame) {
     const double start = base::milliseconds_now();
     eye.look(fluid, sim::gaze_point(scene.scene, frame));
@@ -85,13 +87,21 @@ CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& c
     const double drawn = base::milliseconds_now();
     run.followed_ms.push_back(drawn - looked);
     fluid.frame_time(run.followed_ms.back());
+    if (frame == options.warm_up) before = fluid.report().levels;
     if (frame <= options.warm_up) continue;
-    run.particles.push_back(static_cast<double>(fluid.particle_count()));
+    const auto n = static_cast<double>(fluid.particle_count());
+    run.particles.push_back(n);
+    const auto& temporal = fluid.account().temporal;
+    run.solved.push_back(temporal ? static_cast<double>(temporal->active) / n : 1);
     run.step_ms.push_back(stepped - start);
     run.render_ms.push_back(drawn - stepped);
     run.frame_ms.push_back(drawn - looked);
     run.seen_ms += (looked - start) / (options.frames - options.warm_up);
   }
+  const sim::LevelEvents after = fluid.report().levels;
+  const double frames = options.frames - options.warm_up;
+  run.splits = static_cast<double>(after.splits - before.splits) / frames;
+  run.merges = static_cast<double>(after.merges - before.merges) / frames;
   sim::check_finite(fluid, scene.name);
   sim::print_guards(
       scene.name + ", " + sim::method_name(choice.method) + ", n_* " + std::to_string(choice.n_star), fluid);
@@ -141,6 +151,9 @@ std::vector<std::string> row_of(const sim::CellScene& scene, const measure::Cell
           figures::number(particles.mean, 0),
           figures::number(particles.sd, 0),
           figures::number(particles.mean / finest, 3),
+          figures::number(moments_of(run.solved).mean, 3),
+          figures::number(run.splits, 1),
+          figures::number(run.merges, 1),
           figures::number(base::quantile(run.frame_ms, 0.5), 3),
           figures::number(step_ms, 3),
           figures::number(base::quantile(run.step_ms, 0.99), 3),
@@ -165,19 +178,19 @@ bool wanted(sim::MethodKind method, const std::string& words) {
   return found;
 }
 
-const std::vector<std::string> head{"scene",        "n_star",         "method",       "preset",
-                                    "tau_rule",     "particles_mean", "particles_sd", "share_of_hires",
-                                    "ms_median",    "ms_step_mean",   "ms_step_p99",  "ms_saliency",
-                                    "ms_levels",    "ms_activation",  "ms_solve",     "ms_render",
-                                    "ms_read_back", "picture_by",     "fps_sd",       "tau",
-                                    "speedup"};
+const std::vector<std::string> head{
+    "scene",        "n_star",         "method",      "preset",    "tau_rule",      "particles_mean",
+    "particles_sd", "share_of_hires", "solved",      "splits",    "merges",        "ms_median",
+    "ms_step_mean", "ms_step_p99",    "ms_saliency", "ms_levels", "ms_activation", "ms_solve",
+    "ms_render",    "ms_read_back",   "picture_by",  "fps_sd",    "tau",           "speedup"};
 
 constexpr const char* table2_columns_help =
-    "ms_median is a frame: step and rendering. ms_step_mean and ms_step_p99 are the wall time of a step:\n"
-    "the hand-over of the picture to saliency (ms_read_back is its mean), the step, and one wait at its\n"
-    "end. speedup is HiRes' ms_step_mean over the method's. The parts, ms_saliency to ms_solve, are means\n"
-    "of a second run of the same frames under a clock that waits for the device between them: they may add\n"
-    "up to more than a step.";
+    "solved is the share of the particles that the frame solves; the others rest (temporal acceleration).\n"
+    "splits and merges are numbers a frame. ms_median is a frame: step and rendering. ms_step_mean and\n"
+    "ms_step_p99 are the wall time of a step: the hand-over of the picture to saliency (ms_read_back is its\n"
+    "mean), the step, and one wait at its end. speedup is HiRes' ms_step_mean over the method's. The parts,\n"
+    "ms_saliency to ms_solve, are means of a second run of the same frames under a clock that waits for the\n"
+    "device between them: they may add up to more than a step.";
 
 /// A row of the table: a method and the source of its tau.
 struct RowPlan {

@@ -38,7 +38,11 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
     EXPECT_EQ(by_method[method]["ms_saliency"], "0.000") << method;
     EXPECT_EQ(by_method[method]["ms_levels"], "0.000") << method;
     EXPECT_EQ(by_method[method]["ms_activation"], "0.000") << method;
+    EXPECT_EQ(by_method[method]["splits"], "0.0") << method;
   }
+  EXPECT_EQ(by_method["Ours"]["solved"], "1.000");
+  EXPECT_LT(std::stod(by_method["Ours-TSp"]["solved"]), 1) << "some particles rest";
+  EXPECT_GT(std::stod(by_method["Ours"]["merges"]), 0);
   EXPECT_GT(std::stod(by_method["Ours"]["ms_saliency"]), 0);
   EXPECT_GT(std::stod(by_method["Ours"]["ms_levels"]), 0);
   EXPECT_EQ(by_method["Ours"]["ms_activation"], "0.000");
