@@ -1,9 +1,8 @@
 # cmake -P, after a test program is linked: writes the program's ctest entries to the file ENTRIES. A suite with the label `unit`
-# is one entry, because its tests share what they prepare, or take less time than starting the program and ctest's bookkeeping for
-# each test; GoogleTest's output names the test that failed. A suite in `sharing` is one entry too, and all suites of study_test on
-# the central database are one, because they share a PostgreSQL server. Each test of the other suites
-# is an entry of its own, so that tests of one suite run side by side. A test in real time counts as two processors, so that fewer
-# tests run beside it. Tests that slow_tests.txt lists get the label slow and an entry of their own.
+# is one entry, because its tests share what they prepare, or are shorter than a start of the program. GoogleTest's output names
+# the test that failed. A suite in `sharing` is one entry too. All suites of study_test on the central database together are one
+# entry, because they share a PostgreSQL server. Each test of the other suites is an entry of its own, so that they run side by side.
+# A test in real time counts as two processors, so that fewer tests run beside it. Tests that slow_tests.txt lists get the label slow and an entry of their own.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
@@ -18,7 +17,7 @@ foreach(line IN LISTS lines)
   string(REGEX REPLACE "^[^ ]+ ([^ ]+) .*" "\\1" name "${line}")
   list(APPEND slow ${name})
 endforeach()
-# The tests of these suites share what takes longer to make than they do: a database, an installation, the texts of every --help.
+# The tests of each of these suites share something that takes long to make: the texts of every --help, an installation, a database.
 set(sharing AdviceE2e InstallE2e TaskCommandsE2e)
 set(met "")
 set(entries "")

@@ -24,8 +24,8 @@ class Observer : public Participant {
   std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                const Occasion& occasion, Clock& clock, const Check& check) final;
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
-  /// The question whose answers steer the protocol's procedure: on a page with it, it is the one that is
-  /// answered by the model (`judges` below).
+  /// Sets the question whose answers steer the protocol's procedure. On a page with this question, the
+  /// observer's model answers it, and not the page's first question (`judges` below).
   void set_steering_question(std::string id) { steering_question_ = std::move(id); }
 
   /// Returns one of the question's scores. Never called for a question that is not scored (Text) or that has

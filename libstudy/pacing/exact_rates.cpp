@@ -146,8 +146,9 @@ void check_constant(const Problem& problem) {
                "lower fps_min and raise max_interval_ms, or raise fps_max");
 }
 
-/// Solutions by mean, standard deviation, lowest and highest rate, kind of mean and number of rates. Most
-/// problems occur again, in each session of a study.
+/// Keeps the rates that exact_rates() found, because each session of a study asks for the same ones again.
+/// The key holds all numbers of a problem: mean, standard deviation, lowest and highest rate, kind of mean
+/// and number of rates.
 class Solutions {
  public:
   std::optional<std::vector<double>> find(const Problem& problem) {

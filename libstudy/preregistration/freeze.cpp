@@ -40,7 +40,8 @@ std::vector<Protocol> read_protocols(const std::vector<fs::path>& paths) {
 /// is omitted if another protocol tests it, unless this protocol tests none at all.
 std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
                                      const stats::AnalysisPlan& plan) {
-  // A plan of hypotheses about factors says nothing about the shipped hypotheses about methods.
+  // The shipped hypotheses compare methods. They do not concern a plan that declares hypotheses about
+  // factors.
   if (plan.claims.empty() && !plan.hypotheses.empty()) return {};
   std::vector<stats::ShownClaims> shown;
   std::set<std::string> tested;

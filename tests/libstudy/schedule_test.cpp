@@ -156,7 +156,7 @@ TEST(FrameOrder, FollowsTheSeed) {
   }
 }
 
-// The program keeps the rates that it found for a problem.
+// exact_rates() keeps the rates that it found. Problems that differ in one number must not share them.
 TEST(ExactRates, OfProblemsThatDifferInOneNumberAreTheirOwn) {
   std::vector<PacingRules> rules(4);
   rules[1].mean = FpsMean::Arithmetic;

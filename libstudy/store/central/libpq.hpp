@@ -1,6 +1,6 @@
 #pragma once
-/// libpq, opened when a program first connects to a central database. libpq brings some thirty libraries with
-/// it; loading them would take half of the time in which any program starts.
+/// libpq, opened when a program first connects to a central database. Linking it would load some thirty
+/// further libraries at every start, which took half of a program's start-up time.
 
 #include <libpq-fe.h>
 
