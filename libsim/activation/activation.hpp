@@ -15,6 +15,7 @@ namespace sim::SIM_BACKEND {
 struct ActivationRules {
   explicit ActivationRules(const Readings& readings = {})
       : relative_level_change(readings.dimensionless_levels),
+        within_frame(readings.rest_within_frame),
         robust_range(readings.normalisation == Normalisation::Percentile),
         inherit_change(readings.inherit_change),
         pressed(readings.inactive_pressed && readings.inherit_change),
@@ -27,6 +28,7 @@ struct ActivationRules {
         speed_floor(static_cast<float>(readings.speed_floor)) {}
 
   bool relative_level_change;
+  bool within_frame;  ///< particles rest for one substep, not for the whole frame
   /// The importance F_pim is normalised between two bounds that follow its 1st and 99th percentile, in each
   /// frame by a tenth of the difference; false: between the frame's minimum and maximum.
   bool robust_range;
@@ -99,6 +101,8 @@ struct Activation {
   Array<float> probability;  ///< p_i that particle i is solved, ViP-Fluid Algorithm 3 line 8
   bool columns_set = false;  ///< true once the columns Active and Rest have been written
   bool all_marked = false;   ///< true while Active is 1 for all particles
+  bool some_rest = false;    ///< true during a frame in which particles may rest
+  bool rests_within_frame() const { return some_rest && rules.within_frame; }
 
   // Inputs of ViP-Fluid's Eq. 13 and 14 per cell: differences of V between cells along x, y and z,
   // differences of V between levels, V summed over levels, differences of E between cells along x, y and z.

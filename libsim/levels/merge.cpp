@@ -258,7 +258,7 @@ void merge_pairs(LevelState& l, const LevelFluid& fluid, const Descents& descent
            Remember{.level = p.level(),
                     .target = p.target(),
                     .split_code = l.split_code.data(),
-                    .active = fluid.last_active,
+                    .active = fluid.merges_pause ? fluid.last_active : nullptr,
                     .history = p.history(),
                     .age = p.age(),
                     .waiting = p.waiting(),

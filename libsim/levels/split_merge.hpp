@@ -65,6 +65,7 @@ struct LevelFluid {
   LevelView particles;
   ParticleNeighbours neighbours;
   const std::uint8_t* last_active;  ///< flags of the particles solved in the last frame; nullptr if all were
+  bool merges_pause = true;         ///< particles that rested in the last frame do not merge
   Solids solids;                    ///< walls, and obstacles if there are any
   LevelSupports supports;
   float rest_density;  ///< kg/m3

@@ -41,6 +41,7 @@ Readings readings_of(Preset preset) {
   out.merge_dead_band = 0;
   out.calm_dead_band = 0;
   out.dimensionless_levels = false;
+  out.rest_within_frame = false;
   out.inherit_change = false;
   out.inactive_pressed = false;
   out.inactive_yield = false;

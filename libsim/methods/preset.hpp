@@ -128,8 +128,11 @@ struct Readings {
   /// Eq. 14: the difference dV/dl of the mean velocity V between levels l is divided by |V| + epsilon, which
   /// makes it dimensionless; false: it stays in m/s.
   bool dimensionless_levels = true;
+  /// Particles rest for one substep: every second substep, counted from the frame's last one, solves all
+  /// particles. false: particles rest for whole frames, and take the mean velocity of their cell at its end.
+  bool rest_within_frame = true;
   /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
-  int longest_rest_frames = 1;
+  int longest_rest_frames = 0;
   /// Minimum number of consecutive frames in which a particle is solved after inactive frames; without effect
   /// if longest_rest_frames is 0. The centre of mass of a dam at beta = 0.3 (the lowest probability that a
   /// particle is solved) was compared with a full solve for 10 s (docs/decisions.md). With least_work_frames
@@ -149,7 +152,7 @@ struct Readings {
   /// In each frame, after the inherited change, an inactive particle's velocity v becomes v +
   /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell and beta the lowest
   /// probability that a particle is solved. Without effect if inherit_change is false.
-  double inactive_damping = 0.25;
+  double inactive_damping = 0;
   /// In the denominator of lambda, the multiplier of the density constraint, inactive particles count as if
   /// they could move; false: as if their mass were infinite.
   bool inactive_yield = true;

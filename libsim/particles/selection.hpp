@@ -35,6 +35,13 @@ struct ActiveParticles {
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
+/// Number of substeps since each particle was last solved, in a substep that solves all: 2 for particles that
+/// rested in the substep before.
+struct TimeOfRest {
+  const std::uint8_t* active;  ///< nullptr: no particle rested
+  SIM_FN float operator()(int i) const { return active && !active[i] ? 2.0f : 1.0f; }
+};
+
 /// Selects all particles, active or not, in the order of the slots of ActiveParticles.
 struct EverySlot {
   static constexpr bool everyone = true;

@@ -185,8 +185,7 @@ void run_frame(const Schedule& schedule, FluidState& state) {
   state.substep = 0;
   run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
-    state.substep = substep;
-    state.iteration = 0;
+    state.begin_substep(substep);
     run_all(schedule.substep, state);
     for (int iteration = 0; iteration < state.parameters.iterations; ++iteration) {
       state.iteration = iteration;

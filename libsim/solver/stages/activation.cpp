@@ -71,6 +71,7 @@ struct Choose {
     const Vec4 x = position[i];
     if (age && age[i] == 0) return true;
     const bool fast = length(xyz(velocity[i])) * dt > 0.5f * x.w;
+    if (rules.within_frame) return fast;
     return fast || (rest[i] & rest_sparse) || walls.nearest(xyz(x)) < x.w;
   }
 };
@@ -124,7 +125,9 @@ void run_activation(FluidState& state, ActivationColumns p) {
   a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
   // After splits and merges in weightless water, the stage parting moves all particles, so all are solved.
   const bool parts = state.parameters.weightless() && state.levels.changed;
-  state.all_active = a.beta >= 1 || n == 0 || parts;
+  state.all_active =
+      a.beta >= 1 || n == 0 || parts || (a.rules.within_frame && state.parameters.substeps < 2);
+  a.some_rest = !state.all_active;
   if (!a.columns_set || (state.all_active && !a.all_marked))
     for_each("activate all", n, ActivateAll{p.active(), p.rest()});
   a.columns_set = true;

@@ -213,8 +213,9 @@ struct FluidState {
   FoamPool foam;  ///< capacity 0 if the scene does not list the effect foam
   SaliencyState saliency;
   LevelState levels;
-  /// False during a frame that does not solve all particles. Passes then run over active(), and lists are
-  /// indexed by slots (particles/selection.hpp). True between frames.
+  /// False in a substep that does not solve all particles, and during all of a frame with whole-frame rests.
+  /// Passes then run over active(), and lists are indexed by slots (particles/selection.hpp). True between
+  /// frames.
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
@@ -276,6 +277,17 @@ struct FluidState {
             parameters.gravity.axis()};
   }
   Guards* guard() { return guards.data(); }
+  /// Begins a substep. With rests of one substep (Readings::rest_within_frame), every second substep solves
+  /// all particles, counted from the frame's last one.
+  void begin_substep(int number) {
+    substep = number;
+    iteration = 0;
+    if (activation.rests_within_frame()) all_active = (parameters.substeps - number) % 2 == 1;
+  }
+  /// True in a substep that solves particles which rested in the substep before.
+  bool after_rest() const { return activation.rests_within_frame() && all_active && substep > 0; }
+  /// The time since each particle was last solved, in a substep of after_rest(); else 1 substep for each.
+  TimeOfRest time_of_rest() const { return {after_rest() ? particles.all().active.data() : nullptr}; }
   /// Recorder of troubled particles for a pass in the first (0) or second (1) half of the present substep.
   Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
   /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).

@@ -218,6 +218,7 @@ void run_split_and_merge(FluidState& state, LevelView p) {
   const LevelFluid fluid{.particles = p,
                          .neighbours = state.particle_neighbours(),
                          .last_active = state.last_active(),
+                         .merges_pause = !state.activation.rules.within_frame,
                          .solids = state.solids(),
                          .supports = state.supports,
                          .rest_density = state.parameters.rest_density,

@@ -164,6 +164,8 @@ Stage displacement_stage();
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();
+/// Saves the positions before the projections, which the velocities after a rest of one substep need.
+Stage before_projections_stage();
 /// Computes the velocities from the predicted positions.
 Stage velocity_stage();
 /// XSPH viscosity.

@@ -14,6 +14,9 @@ namespace {
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
+  /// predicted positions before the projections; only in substeps after a rest, else nullptr
+  const Vec4* before;
+  TimeOfRest time;
   Vec4* velocity;
   /// output: velocity change in the substep, which RestingWater filters near new particles; nullptr if
   /// nothing splits or merges
@@ -27,7 +30,8 @@ struct Advance {
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
-    const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
+    Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
+    if (before) after += ((1 / time(i) - 1) / dt) * (xyz(predicted[i]) - xyz(before[i]));
     const Vec3 kept = brake.limited(after, predicted[i].w, i);
     const float now = rest(kept, predicted[i].w);
     velocity[i] = with_w(kept, before_kicks ? at_least(now, rest(v, predicted[i].w)) : now);
@@ -47,7 +51,8 @@ struct Advance {
 
 using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
-               columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
+               columns(Column::Velocity, Column::Position), columns(Column::VelocityNext, Column::Active),
+               columns(Column::PredictedNext)>;
 
 /// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
 /// size").
@@ -68,6 +73,8 @@ void run_velocity(FluidState& state, VelocityColumns p) {
   for_each("velocity", p.size(),
            Advance{.position = p.position(),
                    .predicted = p.predicted(),
+                   .before = state.after_rest() ? p.velocity_next() : nullptr,
+                   .time = state.time_of_rest(),
                    .velocity = p.velocity(),
                    .kick = kick,
                    .brake = state.brake(p.id(), 1),
@@ -85,6 +92,24 @@ Stage velocity_stage() {
                                  .phase = Phase::SubstepEnd,
                                  .called_for = always_moves,
                                  .changes = Change::Projections});
+}
+
+namespace {
+
+using BeforeColumns = ColumnView<columns(Column::Predicted), columns(Column::VelocityNext)>;
+
+void run_before_projections(FluidState& state, BeforeColumns p) {
+  if (state.after_rest()) p.copy<Column::VelocityNext, Column::Predicted>();
+}
+
+}  // namespace
+
+Stage before_projections_stage() {
+  return stage_of<run_before_projections>(
+      {.name = "before projections",
+       .source = "positions before the projections, for rests of one substep",
+       .phase = Phase::Substep,
+       .called_for = if_activation});
 }
 
 namespace {

@@ -103,14 +103,14 @@ using VelocityGridColumns =
 /// low density: one launch over the particles, one over the cells' sums.
 void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
-  const bool changes = !state.all_active && a.rules.inherit_change;
+  const bool changes = a.some_rest && a.rules.inherit_change;
   const bool pressed = changes && a.rules.pressed;
   const bool means = changes && a.rules.damping > 0;
   const GridFrame near = a.near.frame();
   a.after.measure(p, p.active(),
                   {{changes ? Whose::Solved : Whose::Unused, near, p.start_cell()},
                    {pressed ? Whose::Resting : Whose::Unused, near, p.start_cell()},
-                   {state.all_active ? Whose::All : Whose::Solved, a.grid.frame()},
+                   {a.some_rest && !a.rules.within_frame ? Whose::Solved : Whose::All, a.grid.frame()},
                    {means ? Whose::Solved : Whose::Unused, near}});
   const int changing = changes ? grid_levels * near.cells() : 0;
   a.change.resize(static_cast<std::size_t>(changing));
@@ -149,7 +149,7 @@ void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
                              .mean_velocity = from.velocity().data(),
                              .walls = boundary,
                              .frame_dt = frame_dt,
-                             .way_dt = frame_dt * (substeps + 1) / (2 * substeps),
+                             .way_dt = a.rules.within_frame ? 0 : frame_dt * (substeps + 1) / (2 * substeps),
                              .wall_gap = k.wall_gap,
                              .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
 }
@@ -157,11 +157,13 @@ void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
 /// ViP-Fluid, Algorithm 3, lines 4-5 and 13-17. Two passes are needed, because line 15 reads the grid that
 /// line 13 writes.
 void run_velocity_grid(FluidState& state, VelocityGridColumns p) {
+  Activation& a_ = state.activation;
   find_means(state, p);
-  if (!state.all_active)
+  if (a_.some_rest)
     state.obstacles.exists() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
   state.activation.grid.update_energy(p);
   state.all_active = true;
+  a_.some_rest = false;
 }
 
 }  // namespace

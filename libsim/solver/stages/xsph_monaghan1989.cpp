@@ -57,6 +57,7 @@ struct Xsph {
   Neighbours neighbours;
   Vec4* next;
   float spread;  ///< 22 nu dt, m2, with the kinematic viscosity nu
+  TimeOfRest time;
   Filter filter;
 
   /// The particle whose neighbours are summed.
@@ -66,6 +67,7 @@ struct Xsph {
     float density;
     float still;  ///< degree of rest, 0 to 1
     PairKernel<OneLevel> pair;
+    float spread;    ///< 22 nu times the time since it was last solved, m2
     Vec4 kick{};     ///< velocity change in the substep; only with a filter
     float rest = 0;  ///< degree of rest before this change; only with a filter
   };
@@ -90,7 +92,7 @@ struct Xsph {
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
     }
-    const float viscous = at_most(thicker * spread * reciprocal(kernel.h2), most_share);
+    const float viscous = at_most(me.spread * thicker * reciprocal(kernel.h2), most_share);
     const float calmed = at_most(me.still, v.w);
     const float flow = (viscous + calmed * (1 - viscous)) * weight;
     vx += flow * (v.x - me.velocity.x);
@@ -108,7 +110,7 @@ struct Xsph {
       }
     }
     const Vec4 own = velocity[i];
-    Self me{i, position[i], own, density[i], own.w, PairKernel<OneLevel>(position[i].w)};
+    Self me{i, position[i], own, density[i], own.w, PairKernel<OneLevel>(position[i].w), spread * time(i)};
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
       me.rest = filter.rest(own, i);
@@ -145,6 +147,7 @@ void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
                                                   .neighbours = state.neighbours.view(),
                                                   .next = p.velocity_next(),
                                                   .spread = 22 * k.viscosity * k.dt,
+                                                  .time = state.time_of_rest(),
                                                   .filter = filter});
   p.swap<Column::Velocity, Column::VelocityNext>();
 }
