@@ -47,9 +47,9 @@ void Activation::list_active(ActiveListView p) {
 }
 
 std::size_t Activation::bytes() const {
-  return grid.bytes() + near.bytes() + importance.bytes() + probability.bytes() + slope_x.bytes() +
-         slope_y.bytes() + slope_z.bytes() + across_levels.bytes() + total.bytes() + energy_slope.bytes() +
-         before.bytes() + after.bytes() + change.bytes() + ranks.bytes() + slots.bytes() + slot_of.bytes();
+  return grid.bytes() + importance.bytes() + probability.bytes() + slope_x.bytes() + slope_y.bytes() +
+         slope_z.bytes() + across_levels.bytes() + total.bytes() + energy_slope.bytes() + before.bytes() +
+         after.bytes() + change.bytes() + ranks.bytes() + slots.bytes() + slot_of.bytes();
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -109,7 +109,6 @@ struct Importance {
   const Vec4* position;
   const std::uint8_t* level;
   const float* saliency;
-  std::uint8_t* rest;
   float* importance;
   ValueCounter counter;
   GridFrame grid;
@@ -131,14 +130,12 @@ struct Importance {
   }
 
   /// F_pim of particle i, ViP-Fluid Eq. 12; 0 if it is not finite, or if the grid has no velocity at the
-  /// particle. Sets the flag rest_nowhere in the second case, and clears it otherwise.
+  /// particle.
   SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();
     const Vec4 v = sample(velocity, offset, corners);
-    const bool known = v.w != value_unknown;
-    rest[i] = static_cast<std::uint8_t>(known ? rest[i] & ~rest_nowhere : rest[i] | rest_nowhere);
-    if (!known) return 0;
+    if (v.w == value_unknown) return 0;
     const float mass = static_cast<float>(1 << level[i]);
     const float s = saliency ? saliency[i] : 0;
     const float f = mass * expf(s) * (within(offset, corners, v) + across(offset, corners, v));
@@ -190,7 +187,6 @@ void measure_importance(Activation& activation, ImportanceView p, const float* s
            Importance{.position = p.position(),
                       .level = p.level(),
                       .saliency = saliency,
-                      .rest = p.rest(),
                       .importance = a.importance.data(),
                       .counter = a.rules.robust_range ? a.range.counter() : ValueCounter{},
                       .grid = grid,

@@ -165,7 +165,7 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
   for_each_team("add momentum", wanted * runs_of(add.n), add);
 }
 
-void VelocityGrid::fit(const Domain& domain, float edge) {
+GridFrame cells_over(const Domain& domain, float edge) {
   const Vec3 size = domain.high - domain.low;
   const double wanted = static_cast<double>(size.x) * static_cast<double>(size.y) *
                         static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
@@ -175,18 +175,26 @@ void VelocityGrid::fit(const Domain& domain, float edge) {
   const auto count = [&](float length) {
     return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));
   };
-  const CellBlock block{count(size.x), count(size.y), count(size.z)};
+  return {{domain.low, edge}, {count(size.x), count(size.y), count(size.z)}};
+}
+
+void VelocityGrid::fit(const Domain& domain, float edge) {
+  const auto [cells, block] = cells_over(domain, edge);
   const bool same = velocity_.size() && block.nx == block_.nx && block.ny == block_.ny &&
-                    block.nz == block_.nz && edge == frame_.edge;
+                    block.nz == block_.nz && cells.edge == frame_.edge;
   if (same) return;
   block_ = block;
-  frame_ = {domain.low, edge};
-  const auto cells = static_cast<std::size_t>(block.size());
-  velocity_.resize(grid_levels * cells);
-  velocity_.zero();
-  energy_.resize(cells);
-  energy_.zero();
+  frame_ = cells;
+  const auto size = static_cast<std::size_t>(block.size());
+  velocity_.resize(grid_levels * size);
+  energy_.resize(size);
+  forget();
   make_energy_sums();
+}
+
+void VelocityGrid::forget() {
+  velocity_.zero();
+  energy_.zero();
 }
 
 void VelocityGrid::make_energy_sums() {

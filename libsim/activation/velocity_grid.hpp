@@ -110,7 +110,7 @@ struct MomentumOf {
 /// Sums of mass and momentum by cell and level; several sums are computed in one launch.
 class CellMomentum {
  public:
-  static constexpr int most = 4;
+  static constexpr int most = 3;
 
   /// Computes these sums in one launch, replacing earlier ones. active: the column Active; may be nullptr if
   /// every sum is Whose::All or Unused.
@@ -161,11 +161,16 @@ struct FinishVelocity {
   }
 };
 
+/// Cells of `edge` that cover the domain: ceil(extent / edge), at least one per axis. Edges are longer if
+/// there would be more than 2^22 cells.
+GridFrame cells_over(const Domain& domain, float edge);
+
 class VelocityGrid {
  public:
-  /// Covers the domain with cells of `edge`: ceil(extent / edge), at least one per axis. Edges are longer if
-  /// there would be more than 2^22 cells. Discards all values if the cells change.
+  /// Covers the domain with cells_over(domain, edge). Discards all values if the cells change.
   void fit(const Domain& domain, float edge);
+  /// Discards all values.
+  void forget();
   GridFrame frame() const { return {frame_, block_}; }
   int cells() const { return block_.size(); }
 

@@ -134,7 +134,6 @@ struct Make {
   std::uint8_t* history;
   float* saliency;
   float* unrest;
-  std::uint8_t* rest;
   Descents descents;
   int first;
   float support;
@@ -148,7 +147,6 @@ struct Make {
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);  // four entries of two bits
     if (saliency) saliency[i] = 0;
     if (unrest) unrest[i] = 0;
-    if (rest) rest[i] = 0;
     descents.make(i);
   }
 };
@@ -222,7 +220,6 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                 .history = p.history(),
                 .saliency = p.saliency(),
                 .unrest = p.unrest(),
-                .rest = p.rest(),
                 .descents = particles.descents(),
                 .first = staying,
                 .support = supports.h[level],

@@ -42,11 +42,7 @@ Readings readings_of(Preset preset) {
   out.calm_dead_band = 0;
   out.dimensionless_levels = false;
   out.rest_within_frame = false;
-  out.inherit_change = false;
-  out.inactive_pressed = false;
   out.inactive_yield = false;
-  out.longest_rest_frames = 0;
-  out.keep_fragile_active = false;
   return out;
 }
 

@@ -128,37 +128,19 @@ struct Readings {
   /// Eq. 14: the difference dV/dl of the mean velocity V between levels l is divided by |V| + epsilon, which
   /// makes it dimensionless; false: it stays in m/s.
   bool dimensionless_levels = true;
-  /// Particles rest for one substep: every second substep, counted from the frame's last one, solves all
-  /// particles. false: particles rest for whole frames, and take the mean velocity of their cell at its end.
+  /// An inactive particle is not solved in every second substep; the frame's last substep solves all. Gravity
+  /// and the coarse pressure move it meanwhile. The next substep's correction and viscosity then count over
+  /// both substeps, and at the frame's end it takes the velocity change that it lacks, in comparison with the
+  /// particles that were always solved in its cell. Particles that just split or merged, fast particles, and
+  /// particles without a velocity of the grid are always solved. false, as in Algorithm 3: it is not solved
+  /// in the whole frame and takes the mean velocity of its cell.
   bool rest_within_frame = true;
-  /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
-  int longest_rest_frames = 0;
-  /// Minimum number of consecutive frames in which a particle is solved after inactive frames; without effect
-  /// if longest_rest_frames is 0. The centre of mass of a dam at beta = 0.3 (the lowest probability that a
-  /// particle is solved) was compared with a full solve for 10 s (docs/decisions.md). With least_work_frames
-  /// = 2 it deviated by 1.3 to 1.9 % of its height, and 82 % of the particles were solved. With 1 it deviated
-  /// by 2.0 to 2.2 %, and 76 % were solved. longest_rest_frames + least_work_frames <= 14.
-  int least_work_frames = 2;
-  /// Inactive particles add the mean velocity change of the solved particles in their cell; false: they take
-  /// the mean velocity.
-  bool inherit_change = true;
-  /// Gravity and the coarse pressure act on inactive particles in each substep, and these particles inherit
-  /// only the remaining velocity change; false: their velocity is constant within the frame. Needs
-  /// inherit_change.
-  bool inactive_pressed = true;
-  /// Edge of the cells for inherited changes, in diameters d_* of the finest particles; the paper's cells for
+  /// Edge of the cells for velocity changes, in diameters d_* of the finest particles; the paper's cells for
   /// mean velocity and kinetic energy have an edge of 10 d_*.
-  double inherit_cell_spacings = 5;
-  /// In each frame, after the inherited change, an inactive particle's velocity v becomes v +
-  /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell and beta the lowest
-  /// probability that a particle is solved. Without effect if inherit_change is false.
-  double inactive_damping = 0;
+  double change_cell_spacings = 5;
   /// In the denominator of lambda, the multiplier of the density constraint, inactive particles count as if
   /// they could move; false: as if their mass were infinite.
   bool inactive_yield = true;
-  /// Spray, fast particles, particles near walls and obstacles, particles that just split or merged and, with
-  /// the effect cohesion, particles at the surface are solved in every frame.
-  bool keep_fragile_active = true;
 };
 
 Readings readings_of(Preset preset);

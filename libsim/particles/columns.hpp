@@ -62,10 +62,7 @@ enum class Descent {
 //   Ease            share (0, 1] of the density constraint that a particle enforces; below 1 near particles
 //                   that a split or a merge has just made
 //   Age             frames since a split, a merge or a nozzle made the particle, at most 255; starts at 255
-//   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
-//                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-//   Rest            counter of the frames in which the particle was not solved and of the solved frames after
-//                   them, and flags (see activation/activation.hpp)
+//   Active          1 = solved in every substep of the frame, 0 = rests (activation/activation.hpp)
 //   StartCell       cell of the velocity grid in which the particle started the frame
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature
@@ -91,7 +88,6 @@ enum class Descent {
   COLUMN(Ease, ease, float, Scratch, None)                                \
   COLUMN(Age, age, std::uint8_t, Kept, Reset)                             \
   COLUMN(Active, active, std::uint8_t, Kept, Copy)                        \
-  COLUMN(Rest, rest, std::uint8_t, Kept, Copy)                            \
   COLUMN(StartCell, start_cell, int, Kept, Copy)                          \
   COLUMN(Temperature, temperature, float, Kept, MassMean)                 \
   COLUMN(TemperatureNext, temperature_next, float, Scratch, None)         \

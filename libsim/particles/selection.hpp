@@ -38,7 +38,7 @@ struct ActiveParticles {
 /// Number of substeps since each particle was last solved, in a substep that solves all: 2 for particles that
 /// rested in the substep before.
 struct TimeOfRest {
-  const std::uint8_t* active;  ///< nullptr: no particle rested
+  const std::uint8_t* active = nullptr;  ///< nullptr: no particle rested
   SIM_FN float operator()(int i) const { return active && !active[i] ? 2.0f : 1.0f; }
 };
 

@@ -168,7 +168,7 @@ FrameTally AccountKeeper::take(const FluidState& state, std::optional<TemporalRe
                 Gather{.velocity = p.velocity.data(),
                        .density = p.density.data(),
                        .level = p.level.data(),
-                       .active = left_out ? p.active.data() : nullptr,
+                       .active = left_out && !a.rules.within_frame ? p.active.data() : nullptr,
                        .id = p.id.data(),
                        .n = n,
                        .teams = teams,

@@ -257,6 +257,11 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.free_obstacles = any_free(scene.obstacles);
   out.obstacles_meet = any_meet(scene.obstacles);
   out.activation = (method.temporal || options.temporal.always) && !stays_off(options.temporal);
+  for (const Effect& effect : out.effects) {
+    if (!out.activation || effect.kind == EffectKind::Foam || !acts(out, effect.kind)) continue;
+    out.activation = false;
+    out.keeps_all_solved = effect.kind;
+  }
   out.levels = method.adaptive() && levels.first < levels.second;
   out.forced_targets = out.levels && options.forced_targets;
   out.saliency_parts = options.saliency_parts;

@@ -17,7 +17,7 @@ void keep_jets(Archive& archive, Jets& jets) {
 
 template <class Archive>
 void keep_activation(Archive& archive, Activation& a) {
-  archive(a.columns_set, a.all_marked, a.grid, a.near, a.range, a.slots, a.slot_of);
+  archive(a.columns_set, a.all_marked, a.grid, a.range, a.slots, a.slot_of);
 }
 
 /// Writes or reads the particles in their order, the state that lasts from frame to frame, and the neighbour

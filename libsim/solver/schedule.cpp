@@ -126,6 +126,9 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
 }
 
 std::string why_not(const Stage& stage, const Demand& demand) {
+  if (stage.part == Part::Activation && demand.keeps_all_solved != no_effect)
+    return std::string("no particle rests where the effect ") + traits_of(demand.keeps_all_solved).word +
+           " acts";
   const Effect* effect = stage.effect == no_effect ? nullptr : listed(demand, stage.effect);
   if (!effect) return "not called for";
   if (effect->coefficient == 0)
@@ -156,6 +159,8 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
     out.explanation += "  " + padded(phase_name(stage.phase), 13) + padded(stage.name, 20) +
                        padded(reason, 40) + stage.source + "\n";
   }
+  out.activation_paused = demand.keeps_all_solved != no_effect;
+  if (out.activation_paused) out.columns |= columns(Column::Active, Column::StartCell);
   for (auto* passes : {&out.substep, &out.iteration, &out.substep_end})
     share_loops(*passes, loops, out.explanation);
   for (auto* passes : phases_of(out)) {
@@ -183,6 +188,7 @@ void run_frame(const Schedule& schedule, FluidState& state) {
   state.impulse.begin_frame(state.particles, state.guard());
   state.obstacles.begin_frame();
   state.substep = 0;
+  if (schedule.activation_paused) state.activation.columns_set = false;
   run_all(schedule.frame_start, state);
   for (int substep = 0; substep < state.parameters.substeps; ++substep) {
     state.begin_substep(substep);

@@ -12,8 +12,11 @@ namespace sim::SIM_BACKEND {
 
 struct Schedule {
   std::vector<Stage> frame_start, substep, iteration, substep_end, frame_end;
-  std::size_t passes = 0;   ///< number of passes in all phases
-  ColumnSet columns;        ///< all columns that the passes read or write
+  std::size_t passes = 0;  ///< number of passes in all phases
+  ColumnSet columns;       ///< all columns that the passes read or write, and those of a paused activation
+  /// An effect keeps particles from resting (Demand::keeps_all_solved). The columns of the stage activation
+  /// stay, so that rests can begin again when the effect is turned off.
+  bool activation_paused = false;
   std::string explanation;  ///< why each pass runs, and why each other known stage does not
 };
 

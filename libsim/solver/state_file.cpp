@@ -25,16 +25,15 @@ void add(std::ostream& text, const Readings& r) {
   text << r.alpha << ' ' << static_cast<int>(r.falloff) << ' ' << r.fovea_half_angle_deg << ' '
        << r.image_plane_m << ' ' << static_cast<int>(r.thickness) << ' ' << r.attenuation_per_m << ' '
        << r.calm_out_of_view << r.hide_manifold_behind << r.dimensionless << r.graded_targets
-       << r.merge_same_target << r.merge_keeps_steps << r.dimensionless_levels << r.inherit_change
-       << r.inactive_pressed << r.inactive_yield << r.keep_fragile_active << ' ' << r.manifold_window_px
-       << ' ' << static_cast<int>(r.gradient) << ' ' << r.temporal_follow << ' ' << r.temporal_period_frames
-       << ' ' << r.speed_floor << ' ' << r.density_floor << ' ' << static_cast<int>(r.normalisation) << ' '
-       << r.saliency_floor << ' ' << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1]
-       << ' ' << r.split_offset[2] << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap
-       << ' ' << r.merge_dead_band << ' ' << r.kick_filter << ' ' << r.longest_rest_frames << ' '
-       << r.least_work_frames << ' ' << r.inherit_cell_spacings << ' ' << r.inactive_damping << ' '
-       << r.levels_period_frames << ' ' << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed
-       << ' ' << r.calm_floor << ' ' << r.calm_dead_band << ' ' << r.calm_viscosity << '\n';
+       << r.merge_same_target << r.merge_keeps_steps << r.dimensionless_levels << r.rest_within_frame
+       << r.inactive_yield << ' ' << r.manifold_window_px << ' ' << static_cast<int>(r.gradient) << ' '
+       << r.temporal_follow << ' ' << r.temporal_period_frames << ' ' << r.speed_floor << ' '
+       << r.density_floor << ' ' << static_cast<int>(r.normalisation) << ' ' << r.saliency_floor << ' '
+       << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1] << ' ' << r.split_offset[2]
+       << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap << ' ' << r.merge_dead_band
+       << ' ' << r.kick_filter << ' ' << r.change_cell_spacings << ' ' << r.levels_period_frames << ' '
+       << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed << ' ' << r.calm_floor << ' '
+       << r.calm_dead_band << ' ' << r.calm_viscosity << '\n';
 }
 
 /// Adds the scene's hash. A scene that was not read from a file has no hash, so this adds also the scene's

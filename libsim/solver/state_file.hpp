@@ -11,7 +11,7 @@
 namespace sim {
 
 /// Increase when the layout of the body or the contents of the key change.
-inline constexpr int state_file_format = 5;
+inline constexpr int state_file_format = 6;
 
 /// SHA-256 of the scene and of all options that must be equal to resume a state: among others method, n_*,
 /// back end, levels, sim::Readings, seed, capacity and numbers of the solver. The source of tau, the frame

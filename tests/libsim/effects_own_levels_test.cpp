@@ -175,10 +175,12 @@ std::vector<sim::Effect> alone(EffectKind kind, int coarsest) {
 
 TEST(OwnLevels, EveryEffectCostsNothingWhereItIsIdleAndLaunchesWhereItActs) {
   NEEDS_EFFECTS;
-  sim::SimulationOptions options;
+  sim::SimulationOptions options, never_rests;
   options.temporal.fixed_tau = -20;
+  never_rests.temporal.fixed_tau = 0;
   for (const auto& method : sim::all_methods()) {
     const Price bare = price_of(*fluid_of(small_dam(), method.kind, options));
+    const Price solved = price_of(*fluid_of(small_dam(), method.kind, never_rests));
     for (const EffectKind kind : all_kinds()) {
       for (int coarsest = 0; coarsest < sim::most_levels; ++coarsest) {
         SCOPED_TRACE(std::string(method.name) + ", " + sim::traits_of(kind).word + " up to level " +
@@ -191,11 +193,51 @@ TEST(OwnLevels, EveryEffectCostsNothingWhereItIsIdleAndLaunchesWhereItActs) {
           EXPECT_EQ(price, bare);
           EXPECT_EQ(fluid->foam_capacity(), 0);
         } else {
-          EXPECT_GT(price.launches, bare.launches);
-          EXPECT_EQ(price.substeps > bare.substeps, sim::traits_of(kind).unit != sim::EffectUnit::Unlimited);
+          // Only foam lets particles rest.
+          const Price& without = kind == EffectKind::Foam ? bare : solved;
+          EXPECT_GT(price.launches, without.launches);
+          EXPECT_EQ(price.substeps > without.substeps,
+                    sim::traits_of(kind).unit != sim::EffectUnit::Unlimited);
         }
       }
     }
+  }
+}
+
+TEST(OwnLevels, NoParticleRestsWhereAnEffectOtherThanFoamActs) {
+  NEEDS_EFFECTS;
+  sim::SimulationOptions options, never_rests;
+  options.temporal.fixed_tau = -60;
+  never_rests.temporal.fixed_tau = 0;
+  const auto rests = [](sim::Simulation& fluid) {
+    bool out = false;
+    for (int frame = 0; frame < 6; ++frame) {
+      fluid.step_frame();
+      out = out || fluid.account().temporal->active < fluid.particle_count();
+    }
+    return out;
+  };
+  const auto dam = [](const std::vector<sim::Effect>& effects) {
+    auto out = small_dam(effects);
+    out.min_substeps = 2;
+    return out;
+  };
+  EXPECT_TRUE(rests(*fluid_of(dam({}), MethodKind::OursTsp, options)));
+  for (const EffectKind kind : all_kinds()) {
+    SCOPED_TRACE(sim::traits_of(kind).word);
+    const auto scene = dam(alone(kind, 3));
+    const auto fluid = fluid_of(scene, MethodKind::OursTsp, options);
+    const bool foam = kind == EffectKind::Foam;
+    const auto reason =
+        std::string("no particle rests where the effect ") + sim::traits_of(kind).word + " acts";
+    EXPECT_EQ(fluid->explain().find(reason) == std::string::npos, foam);
+    EXPECT_EQ(rests(*fluid), foam);
+    if (foam) continue;
+    const auto solved = fluid_of(scene, MethodKind::OursTsp, never_rests);
+    EXPECT_FALSE(rests(*solved));
+    EXPECT_EQ(launches_of(*fluid, 6), launches_of(*solved, 6));
+    fluid->set_effects({});
+    EXPECT_TRUE(rests(*fluid));
   }
 }
 

@@ -83,19 +83,16 @@ double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 
     ++count;
   }
   const double theta = sum / count;
-  const auto report = fluid->report();
   std::string levels;
-  for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
-  const double solved =
-      static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
+  for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
   const State all = fluid->read_state();
   const double thrown = 1 - total_mass(within_reach(drop, all)) / total_mass(all);
   EXPECT_LE(thrown, most_thrown);
   const double back = (1 + std::cos(theta)) / drop.work;
   std::printf(
-      "adhesion of %.2f sigma, level %d, beta %.2f, %.2f solved, by level%s: %.3f thrown off: "
-      "contact angle %.1f degrees, %.3f of what was given\n",
-      drop.work, drop.level, drop.beta, solved, levels.c_str(), thrown, theta * 180 / pi, back);
+      "adhesion of %.2f sigma, level %d, by level%s: %.3f thrown off: contact angle %.1f degrees, %.3f of "
+      "what was given\n",
+      drop.work, drop.level, levels.c_str(), thrown, theta * 180 / pi, back);
   return back;
 }
 
@@ -117,12 +114,6 @@ void drops_of_one_level(Backend backend, const Works& works) {
                 1, within)
         << work;
   }
-}
-void a_drop_that_rests_in_turns(Backend backend, const Works& works) {
-  NEEDS_EFFECTS;
-  for (const double work : works)
-    EXPECT_NEAR(adhesion_back(on_the_floor({.beta = 0.67, .work = work, .backend = backend})), 1, within)
-        << work;
 }
 Drop half_fine(double work, Backend backend) {
   return {.spacings = 6,
@@ -250,7 +241,6 @@ void drops_on_a_box_of_any_level(Backend backend) {
       adhesion_back(on_a_box({.level = 3, .method = MethodKind::LoRes, .work = weak, .backend = backend})), 1,
       within);
   EXPECT_NEAR(adhesion_back(on_a_box(half_fine(strong, backend)), 3), 1, within);
-  EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = strong, .backend = backend})), 1, within);
 }
 /// The smaller the ball in spacings, the more it holds a drop.
 void a_drop_on_a_ball(Backend backend) {
@@ -259,21 +249,14 @@ void a_drop_on_a_ball(Backend backend) {
 }
 
 TEST(TruthAdhesion, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cpu, {strong}); }
-TEST(TruthAdhesion, ADropThatRestsInTurnsTakesItsAngle) { a_drop_that_rests_in_turns(Backend::Cpu, {weak}); }
 TEST(TruthAdhesion, DropsThatTheFloorHoldsLess) { drops_that_the_floor_holds_less(Backend::Cpu); }
 TEST(TruthAdhesion, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cpu, {weak}); }
 TEST(TruthAdhesion, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cpu); }
 TEST(TruthAdhesionSlow, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cpu, both); }
-TEST(TruthAdhesionSlow, ADropThatRestsInTurnsTakesItsAngle) {
-  a_drop_that_rests_in_turns(Backend::Cpu, both);
-}
 TEST(TruthAdhesionSlow, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cpu, both); }
 TEST(TruthAdhesionSlow, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cpu); }
 TEST(TruthAdhesionSlow, ADropOfMixedLevelsTakesItsAngle) { a_drop_of_mixed_levels(Backend::Cpu); }
 TEST(TruthAdhesionGpu, DropsOfOneLevelTakeTheirAngle) { drops_of_one_level(Backend::Cuda, both); }
-TEST(TruthAdhesionGpu, ADropThatRestsInTurnsTakesItsAngle) {
-  a_drop_that_rests_in_turns(Backend::Cuda, both);
-}
 TEST(TruthAdhesionGpu, DropsOnABoxTakeTheirAngle) { drops_on_a_box(Backend::Cuda, both); }
 TEST(TruthAdhesionGpu, DropsOnABoxOfAnyLevelTakeTheirAngle) { drops_on_a_box_of_any_level(Backend::Cuda); }
 TEST(TruthAdhesionGpu, ADropOnABallTakesItsAngle) { a_drop_on_a_ball(Backend::Cuda); }

@@ -23,7 +23,6 @@ struct Pool {
   int level = 0;                               ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the floor's middle
-  double beta = 1;
   Backend backend = Backend::Cpu;
 
   double finest() const { return 0.05; }
@@ -82,7 +81,6 @@ std::unique_ptr<sim::Simulation> run_of(const Pool& pool, const State& start, do
                        pool.width() * (0.5 + region.centre_m[2])};
     region.radius_m *= pool.width();
   }
-  rest_at(pool.beta, options);
   return sim::make_simulation(scene, options);
 }
 
@@ -115,28 +113,20 @@ Gains confinement_back(const Pool& pool) {
   const State start = pool.turning();
   Gains gained[2];
   std::string levels;
-  double solved = 1;
   for (const bool on : {false, true}) {
     const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
-    // With temporal acceleration the choice of resting particles depends on the frames before, so 30 frames
-    // run before the start is put back.
-    for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
-    fluid->put(start);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       for (int frame = k ? frames[k - 1] : 0; frame < frames[k]; ++frame) fluid->step_frame();
       gained[on][k] = spin(pool, fluid->read_state());
     }
     levels.clear();
-    const auto report = fluid->report();
-    for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
-    solved = static_cast<double>(report.temporal.active) / static_cast<double>(fluid->particle_count());
+    for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
   }
   Gains back{};
   for (std::size_t k = 0; k < frames.size(); ++k) {
     back[k] = (gained[1][k] - gained[0][k]) / (frames[k] * sim::Scene{}.frame_dt_s * pool.given());
-    std::printf(
-        "level %d, beta %.2f, %.2f solved, by level%s, %d frames: confinement %.3f of what was given\n",
-        pool.level, pool.beta, solved, levels.c_str(), frames[k], back[k]);
+    std::printf("level %d, by level%s, %d frames: confinement %.3f of what was given\n", pool.level,
+                levels.c_str(), frames[k], back[k]);
   }
   return back;
 }
@@ -156,10 +146,6 @@ void vortices_of_one_level(Backend backend) {
 void a_vortex_of_mixed_levels(Backend backend) {
   NEEDS_EFFECTS;
   gains({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend});
-}
-void a_vortex_that_rests_in_turns(Backend backend) {
-  NEEDS_EFFECTS;
-  gains({.beta = 0.67, .backend = backend});
 }
 
 double energy(const State& state) {
@@ -230,13 +216,11 @@ void still_water_stays_still(Backend backend) {
 
 TEST(TruthVorticity, VorticesOfOneLevelGainWhatTheyShould) { vortices_of_one_level(Backend::Cpu); }
 TEST(TruthVorticity, AVortexOfMixedLevelsGains) { a_vortex_of_mixed_levels(Backend::Cpu); }
-TEST(TruthVorticity, AVortexThatRestsInTurnsGains) { a_vortex_that_rests_in_turns(Backend::Cpu); }
 TEST(TruthVorticity, ACoreIsKeptLonger) { a_core_is_kept_longer(Backend::Cpu); }
 TEST(TruthVorticity, EnergyIsBounded) { energy_is_bounded(Backend::Cpu); }
 TEST(TruthVorticity, StillWaterStaysStill) { still_water_stays_still(Backend::Cpu); }
 TEST(TruthVorticityGpu, VorticesOfOneLevelGainWhatTheyShould) { vortices_of_one_level(Backend::Cuda); }
 TEST(TruthVorticityGpu, AVortexOfMixedLevelsGains) { a_vortex_of_mixed_levels(Backend::Cuda); }
-TEST(TruthVorticityGpu, AVortexThatRestsInTurnsGains) { a_vortex_that_rests_in_turns(Backend::Cuda); }
 TEST(TruthVorticityGpu, ACoreIsKeptLonger) { a_core_is_kept_longer(Backend::Cuda); }
 TEST(TruthVorticityGpu, EnergyIsBounded) { energy_is_bounded(Backend::Cuda); }
 TEST(TruthVorticityGpu, StillWaterStaysStill) { still_water_stays_still(Backend::Cuda); }

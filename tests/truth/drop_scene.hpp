@@ -12,7 +12,6 @@ struct Drop {
   int level = 0;                               ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the drop's middle
-  double beta = 1;
   double tension = 10;
   double work = 0;        ///< work of adhesion over the tension; 0: none
   double width = 4;       ///< width of the tank, in radii
@@ -37,8 +36,7 @@ struct Drop {
 /// A run that starts from the particles that are `inside`, a test of the position in metres from the drop's
 /// middle.
 inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
-                                                 const std::function<bool(const Vec3d&)>& inside,
-                                                 sim::SimulationOptions options = {}) {
+                                                 const std::function<bool(const Vec3d&)>& inside) {
   const double width = drop.tank();
   const Vec3d middle = drop.middle();
   auto scene = fluid_test::tank({width, width, width}, {width, width, width});
@@ -55,6 +53,7 @@ inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
   State start = lattice(
       drop.spacing(), scene.tank_size_m, [&](const Vec3d& x) { return inside(from_middle(x)); },
       [](const Vec3d&) { return Vec3d{}; });
+  sim::SimulationOptions options;
   options.backend = drop.backend;
   options.method = drop.method;
   begin_with(std::move(start), drop.level, Drop::finest, scene, options);
@@ -66,7 +65,6 @@ inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
     }
     options.forced_targets->radius_m *= drop.radius();
   }
-  rest_at(drop.beta, options);
   return sim::make_simulation(scene, options);
 }
 /// True for positions in a ball of the drop's radius.

@@ -22,7 +22,6 @@ struct Plate {
   int level = 0;                               ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in metres, relative to the plate's middle
-  double beta = 1;
   Backend backend = Backend::Cpu;
 };
 
@@ -48,7 +47,6 @@ std::unique_ptr<sim::Simulation> start_of(const Plate& plate) {
     options.forced_targets->centre_m[0] += start_x;
     options.forced_targets->centre_m[2] += 1.6;
   }
-  rest_at(plate.beta, options);
   return sim::make_simulation(scene, options);
 }
 
@@ -94,15 +92,12 @@ double drag_back(const Plate& plate) {
     const double c = (low + high) / 2;
     (rate_of(c, (thickness + after) / 2) < rate ? low : high) = c;
   }
-  const auto report = fluid->report();
   std::string levels;
-  for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
-  const double solved = static_cast<double>(report.temporal.active) / static_cast<double>(state.size());
+  for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
   std::printf(
-      "level %d, beta %.2f, %.2f solved, by level%s: slid %.3f m, left %.3f m/s, height %.3f to %.3f m: drag "
-      "%.3f of what "
-      "was given\n",
-      plate.level, plate.beta, solved, levels.c_str(), way, last, thickness, after, low / given);
+      "level %d, by level%s: slid %.3f m, left %.3f m/s, height %.3f to %.3f m: drag %.3f of what was "
+      "given\n",
+      plate.level, levels.c_str(), way, last, thickness, after, low / given);
   return low / given;
 }
 
@@ -119,16 +114,10 @@ void a_plate_of_mixed_levels(Backend backend) {
   EXPECT_NEAR(drag_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}),
               1, within);
 }
-void a_plate_that_rests_in_turns(Backend backend) {
-  NEEDS_EFFECTS;
-  EXPECT_NEAR(drag_back({.beta = 0.67, .backend = backend}), 1, within);
-}
 
 TEST(TruthFriction, PlatesOfOneLevelSlideAsFarAsTheyShould) { plates_of_one_level(Backend::Cpu); }
 TEST(TruthFriction, APlateOfMixedLevelsSlidesAsFar) { a_plate_of_mixed_levels(Backend::Cpu); }
-TEST(TruthFriction, APlateThatRestsInTurnsSlidesAsFar) { a_plate_that_rests_in_turns(Backend::Cpu); }
 TEST(TruthFrictionGpu, PlatesOfOneLevelSlideAsFarAsTheyShould) { plates_of_one_level(Backend::Cuda); }
 TEST(TruthFrictionGpu, APlateOfMixedLevelsSlidesAsFar) { a_plate_of_mixed_levels(Backend::Cuda); }
-TEST(TruthFrictionGpu, APlateThatRestsInTurnsSlidesAsFar) { a_plate_that_rests_in_turns(Backend::Cuda); }
 
 }  // namespace

@@ -17,7 +17,6 @@ struct Tank {
   int level = 0;                          ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;  ///< must allow particles of this level
   bool mixed = false;                     ///< half of the fluid is at level 0
-  double beta = 1;
   Backend backend = Backend::Cpu;
 
   double spacing() const { return d_fine * std::cbrt(1 << level); }
@@ -35,7 +34,6 @@ std::unique_ptr<sim::Simulation> fill(const Tank& tank, const Vec3d& size, doubl
   begin_with(std::move(start), tank.level, d_fine, scene, options);
   if (tank.mixed)
     options.forced_targets = sim::TargetRegion{{size[0] / 2, size[1] / 2, size[2]}, size[0] / 2, 0, 3};
-  rest_at(tank.beta, options);
   return sim::make_simulation(scene, options);
 }
 
@@ -58,8 +56,8 @@ double slope_left(const Tank& tank) {
   EXPECT_NEAR(first, 3, 0.2);
   for (int k = 0; k < 120 * std::sqrt(larger); ++k) fluid->step_frame();
   const double left = slope(fluid->read_state());
-  std::printf("level %d%s, beta %.2f: a slope of %.2f d, %.3f d of it left\n", tank.level,
-              tank.mixed ? ", mixed" : "", tank.beta, first, left);
+  std::printf("level %d%s: a slope of %.2f d, %.3f d of it left\n", tank.level, tank.mixed ? ", mixed" : "",
+              first, left);
   return left;
 }
 
@@ -70,16 +68,11 @@ TEST(TruthLevelling, ThickFluidOfOneLevelComesToLevel) {
   EXPECT_NEAR(slope_left({}), 0, flat);
   EXPECT_NEAR(slope_left({.level = 3, .method = MethodKind::LoRes}), 0, flat);
 }
-TEST(TruthLevelling, ThickFluidThatRestsInTurnsComesToLevel) {
-  NEEDS_EFFECTS;
-  EXPECT_NEAR(slope_left({.beta = 0.67}), 0, flat);
-}
 
 TEST(TruthLevellingGpu, ThickFluidComesToLevel) {
   NEEDS_EFFECTS;
   EXPECT_NEAR(slope_left({.backend = Backend::Cuda}), 0, flat);
   EXPECT_NEAR(slope_left({.level = 3, .method = MethodKind::LoRes, .backend = Backend::Cuda}), 0, flat);
-  EXPECT_NEAR(slope_left({.beta = 0.67, .backend = Backend::Cuda}), 0, flat);
 }
 
 /// Decay rate of a cell of Taylor-Green vortices over a third of a second, as a ratio to that of its

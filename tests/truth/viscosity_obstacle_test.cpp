@@ -21,7 +21,6 @@ struct Turning {
   int level = 0;                               ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the sphere's middle
-  double beta = 1;
   double stick = 1;
   Backend backend = Backend::Cpu;
 
@@ -65,7 +64,6 @@ std::unique_ptr<sim::Simulation> start_of(const Turning& it) {
     for (double& at : options.forced_targets->centre_m) at = middle + at * it.radius();
     options.forced_targets->radius_m *= it.radius();
   }
-  rest_at(it.beta, options);
   return sim::make_simulation(scene, options);
 }
 
@@ -80,11 +78,10 @@ double torque_of(const Turning& it) {
   }
   const double endless = 8 * pi * rho * it.viscosity() * std::pow(it.radius(), 3) * it.rate();
   const double out = sum / it.decay_time() / endless;
-  const auto report = fluid->report();
   std::string levels;
-  for (const auto n : report.particles_by_level) levels += " " + std::to_string(n);
-  std::printf("sphere that turns, level %d, beta %.2f, by level%s: torque %.3f of that without walls\n",
-              it.level, it.beta, levels.c_str(), out);
+  for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
+  std::printf("sphere that turns, level %d, by level%s: torque %.3f of that without walls\n", it.level,
+              levels.c_str(), out);
   return out;
 }
 
@@ -106,22 +103,12 @@ void a_sphere_among_mixed_levels(Backend backend) {
                          .backend = backend}),
               torque, within);
 }
-void a_sphere_where_some_rest(Backend backend) {
-  NEEDS_EFFECTS;
-  EXPECT_NEAR(torque_of({.beta = 0.67, .backend = backend}), torque, within);
-}
 
 TEST(TruthViscosityAtObstacles, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cpu); }
-TEST(TruthViscosityAtObstacles, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
-  a_sphere_where_some_rest(Backend::Cpu);
-}
 TEST(TruthViscosityAtObstaclesSlow, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
   a_sphere_among_mixed_levels(Backend::Cpu);
 }
 TEST(TruthViscosityAtObstaclesGpu, SpheresThatTurnNeedTheirTorque) { spheres_of_one_level(Backend::Cuda); }
-TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsWhereSomeRestNeedsItsTorque) {
-  a_sphere_where_some_rest(Backend::Cuda);
-}
 TEST(TruthViscosityAtObstaclesGpu, ASphereThatTurnsAmongMixedLevelsNeedsItsTorque) {
   a_sphere_among_mixed_levels(Backend::Cuda);
 }

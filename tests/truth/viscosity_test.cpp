@@ -21,7 +21,6 @@ struct Wave {
   int level = 0;                               ///< level of the particles at the start
   MethodKind method = MethodKind::HiRes;       ///< must allow particles of this level
   std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the column's middle
-  double beta = 1;
   Backend backend = Backend::Cpu;
 
   double spacing() const { return d * std::cbrt(1 << level); }
@@ -57,7 +56,6 @@ std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
                        a * (0.5 + region.centre_m[2])};
     region.radius_m *= a;
   }
-  rest_at(wave.beta, options);
   return sim::make_simulation(scene, options);
 }
 
@@ -86,8 +84,8 @@ double viscosity_back(const Wave& wave) {
   const double back = -fit(t, logs).slope;
   std::string levels;
   for (const auto n : fluid->report().particles_by_level) levels += " " + std::to_string(n);
-  std::printf("walls that %s, level %d, beta %.2f, by level%s: viscosity %.3f of what was given\n",
-              wave.sticks ? "hold" : "let slip", wave.level, wave.beta, levels.c_str(), back);
+  std::printf("walls that %s, level %d, by level%s: viscosity %.3f of what was given\n",
+              wave.sticks ? "hold" : "let slip", wave.level, levels.c_str(), back);
   return back;
 }
 
@@ -115,17 +113,10 @@ void waves_of_mixed_levels(Backend backend) {
                 1, within);
   }
 }
-void waves_that_rest_in_turns(Backend backend) {
-  NEEDS_EFFECTS;
-  for (const bool sticks : {false, true})
-    EXPECT_NEAR(viscosity_back({.sticks = sticks, .beta = 0.67, .backend = backend}), 1, within);
-}
 
 TEST(TruthViscosity, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cpu); }
-TEST(TruthViscosity, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cpu); }
 TEST(TruthViscositySlow, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cpu); }
 TEST(TruthViscosityGpu, WavesOfOneLevelDecay) { waves_of_one_level(Backend::Cuda); }
-TEST(TruthViscosityGpu, WavesThatRestInTurnsDecay) { waves_that_rest_in_turns(Backend::Cuda); }
 TEST(TruthViscosityGpu, WavesOfMixedLevelsDecay) { waves_of_mixed_levels(Backend::Cuda); }
 
 }  // namespace

@@ -14,12 +14,10 @@ namespace {
 /// the forces of the energies of missing density and of |n|^2, with n the surface normal and s = skin(rho /
 /// rho_0). Both are antisymmetric, so that momentum is conserved. V is a volume, hbar the mean support of a
 /// pair. The force of a pair is proportional to the tension sigma times hbar, and the tension of a surface is
-/// sigma per length at every particle size. Pairs with unsolved particles are skipped: no pressure of an
-/// unsolved particle would balance the attraction, and it would not receive the reaction. Pairs with
-/// particles too coarse for the effect are skipped too.
-template <bool OneLevel, class Selection>
+/// sigma per length at every particle size. Pairs with particles too
+/// coarse for the effect are skipped.
+template <bool OneLevel>
 struct Cohesion {
-  Selection select;
   const Vec4* position;
   const float* density;
   const Vec4* normal;
@@ -45,7 +43,6 @@ struct Cohesion {
     const float dz = me.at.z - other.z;
     const float t = at_least(kernel.h2 - (dx * dx + dy * dy + dz * dz), 0.0f);
     float weight = me.pair.mass_ratio(other.w) * kernel.poly6 * t;
-    if constexpr (!Selection::everyone) weight *= select.moves(j);
     if constexpr (!OneLevel) weight = other.w <= widest ? weight : 0.0f;
     const float skins = me.skin + skin(density[j]);
     const Vec4 n = normal[j];
@@ -62,19 +59,15 @@ struct Cohesion {
   }
 
   template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) return;
-    }
+  SIM_FN void operator()(int i, Team team) const {
     const Vec4 at = position[i];
     if (at.w > widest) return;
     const Self me{at, normal[i], skin(density[i]), PairKernel<OneLevel>(at.w)};
     float vx = 0;
     float vy = 0;
     float vz = 0;
-    const int count = neighbours.size(slot);
-    const NeighbourRun run = neighbours.run(slot);
+    const int count = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
     SIM_LANES(vx, vy, vz)
     for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz);
     vx = team.sum(vx);
@@ -90,24 +83,17 @@ using CohesionView = ColumnView<columns(Column::Position, Column::Density, Colum
                                         Column::Velocity),
                                 columns(Column::Velocity)>;
 
-template <bool OneLevel, class Selection>
-void launch(FluidState& state, CohesionView p, Selection select) {
+template <bool OneLevel>
+void launch(FluidState& state, CohesionView p) {
   const auto& k = state.parameters;
-  for_each_team(
-      "cohesion", p.size(),
-      Cohesion<OneLevel, Selection>{.select = select,
-                                    .position = p.position(),
-                                    .density = p.density(),
-                                    .normal = p.normal(),
-                                    .neighbours = state.neighbours.view(),
-                                    .velocity = p.velocity(),
-                                    .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density,
-                                    .widest = state.widest_support(EffectOption::CohesionCoarsest)});
-}
-
-template <class Selection>
-void launch(FluidState& state, CohesionView p, Selection select) {
-  state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
+  for_each_team("cohesion", p.size(),
+                Cohesion<OneLevel>{.position = p.position(),
+                                   .density = p.density(),
+                                   .normal = p.normal(),
+                                   .neighbours = state.neighbours.view(),
+                                   .velocity = p.velocity(),
+                                   .strength = k.dt * k.effects[EffectKind::Cohesion] / k.rest_density,
+                                   .widest = state.widest_support(EffectOption::CohesionCoarsest)});
 }
 
 void find_normals(FluidState& state, NormalView p) {
@@ -115,7 +101,7 @@ void find_normals(FluidState& state, NormalView p) {
 }
 
 void pull(FluidState& state, CohesionView p) {
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+  state.one_level ? launch<true>(state, p) : launch<false>(state, p);
 }
 
 }  // namespace

@@ -87,10 +87,8 @@ struct TakeWarmth {
 
 /// Boussinesq: dv / dt = g beta (theta - mean theta) against gravity, with beta the expansion per kelvin and
 /// the mean by mass over the water that takes part in the effect. So a uniform temperature causes no motion,
-/// and the buoyancy forces sum to zero. Buoyancy acts only on particles on which gravity acts in this frame.
-template <class Selection>
+/// and the buoyancy forces sum to zero.
 struct Rise {
-  Selection select;
   const float* temperature;
   const std::uint8_t* level;
   const MeanWarmth* mean;
@@ -100,8 +98,7 @@ struct Rise {
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;
-    float warmer = temperature[i] - mean->warmth;
-    if constexpr (!Selection::everyone) warmer *= select.falls(i);
+    const float warmer = temperature[i] - mean->warmth;
     Vec4& v = velocity[i];
     v.y += warmer * lift.y;
     if (lift.x == 0 && lift.z == 0) return;  // adding 0 would change the sign of -0
@@ -112,20 +109,6 @@ struct Rise {
 
 using RiseView =
     ColumnView<columns(Column::Level, Column::Temperature, Column::Velocity), columns(Column::Velocity)>;
-
-template <class Selection>
-void launch(FluidState& state, RiseView p, Selection select, int coarsest) {
-  const auto& k = state.parameters;
-  for_each("buoyancy", p.size(),
-           Rise<Selection>{
-               .select = select,
-               .temperature = p.temperature(),
-               .level = p.level(),
-               .mean = state.buoyancy.mean.data(),
-               .velocity = p.velocity(),
-               .lift = k.gravity.strength * k.dt * k.effects[EffectOption::HeatExpansion] * k.gravity.up,
-               .coarsest = coarsest});
-}
 
 void take_mean(Buoyancy& buoyancy, RiseView p, int capacity, int coarsest) {
   buoyancy.mean.resize(1);
@@ -139,7 +122,14 @@ void rise(FluidState& state, RiseView p) {
   if (state.parameters.effects[EffectOption::HeatExpansion] == 0) return;
   const auto coarsest = static_cast<int>(state.parameters.effects[EffectOption::HeatCoarsest]);
   take_mean(state.buoyancy, p, state.particles.capacity(), coarsest);
-  state.all_active ? launch(state, p, AllParticles{}, coarsest) : launch(state, p, state.active(), coarsest);
+  const auto& k = state.parameters;
+  for_each("buoyancy", p.size(),
+           Rise{.temperature = p.temperature(),
+                .level = p.level(),
+                .mean = state.buoyancy.mean.data(),
+                .velocity = p.velocity(),
+                .lift = k.gravity.strength * k.dt * k.effects[EffectOption::HeatExpansion] * k.gravity.up,
+                .coarsest = coarsest});
 }
 
 }  // namespace

@@ -53,63 +53,12 @@ struct Images {
   }
 };
 
-/// Computes a factor for the pairs of each solved particle. Unsolved particles are not part of the system of
-/// equations; they later take the mean velocity change of the particles around them. To make up for their
-/// missing pairs, the pairs of a solved particle are multiplied by the factor in w of `bent`: the weight of
-/// all neighbours divided by the weight of the solved ones. It is 0 for particles that are unsolved or too
-/// coarse for the effect. Particles that are too coarse do not count as neighbours.
-template <bool OneLevel>
-struct Shares {
-  ActiveParticles select;
-  const Vec4* position;
-  Neighbours neighbours;
-  Vec4* bent;
-  float widest;  ///< largest support of particles on which the effect acts, m
-
-  /// Adds the weight of particle j; a separate function, so that the loop vectorises (SIM_LANES).
-  SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
-    const Vec4 other = position[j];
-    const Vec3 offset = xyz(self) - xyz(other);
-    float weight = weight_of(pair.with(other.w), pair.mass_ratio(other.w), dot(offset, offset));
-    if constexpr (!OneLevel) weight = other.w <= widest ? weight : 0.0f;
-    all += weight;
-    solved += select.moves(j) * weight;
-  }
-
-  template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
-    const int i = select(slot);
-    if (i < 0) {
-      bent[~i] = {0, 0, 0, 0};
-      return;
-    }
-    const Vec4 self = position[i];
-    if (self.w > widest) {
-      bent[i] = {0, 0, 0, 0};
-      return;
-    }
-    const PairKernel<OneLevel> pair(self.w);
-    float all = 0;
-    float solved = 0;
-    const int count = neighbours.size(slot);
-    const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(all, solved)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, all, solved);
-    all = team.sum(all);
-    solved = team.sum(solved);
-    if (team.rank() == 0) bent[i] = {0, 0, 0, all > 0 ? quotient(all, at_least(solved, all / most)) : 1};
-  }
-  /// Upper bound of the factor, for neighbourhoods in which almost no particle is solved.
-  static constexpr float most = 4;
-};
-
 /// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the inner product sum_i m_i
 /// a_i b_i: A is symmetric in it, and every step, not only the last, conserves momentum and angular momentum.
 /// First: computes residual and direction from the velocity. Otherwise: A times the direction. Particles too
 /// coarse for the effect are not part of the system: a pair pulls only if both take part.
-template <bool First, bool OneLevel, class Selection, class Bodies>
+template <bool First, bool OneLevel, class Bodies>
 struct Friction {
-  Selection select;
   const Vec4* position;
   const Vec4* moving;  ///< velocity or direction
   Neighbours neighbours;
@@ -120,27 +69,19 @@ struct Friction {
   Vec4* direction;
   Vec4* bent;    ///< A times direction
   float widest;  ///< largest support of particles on which the effect acts, m
-  // The fourth component w of residual and direction is the factor that Shares computes; 1 if all particles
-  // are solved.
 
   struct Self {
     Vec4 at, moving;
-    float share;
     PairKernel<OneLevel> pair;
   };
 
-  SIM_FN float share_of(int i) const {
-    if constexpr (Selection::everyone) return 1;
-    return First ? bent[i].w : moving[i].w;
-  }
-  SIM_FN void add(float share, Vec4 other, Vec4 v, const Self& me, float& x, float& y, float& z) const {
+  SIM_FN void add(Vec4 other, Vec4 v, const Self& me, float& x, float& y, float& z) const {
     const Kernel kernel = me.pair.with(other.w);
     const float dx = me.at.x - other.x;
     const float dy = me.at.y - other.y;
     const float dz = me.at.z - other.z;
     const float r2 = dx * dx + dy * dy + dz * dz;
     float ratio = me.pair.mass_ratio(other.w);
-    if constexpr (!Selection::everyone) ratio *= share > 0 ? (me.share + share) / 2 : 0;
     if constexpr (!OneLevel) ratio = other.w <= widest ? ratio : 0.0f;
     const float parting = dx * (me.moving.x - v.x) + dy * (me.moving.y - v.y) + dz * (me.moving.z - v.z);
     const float along =
@@ -151,35 +92,28 @@ struct Friction {
   }
   /// Adds the pull of particle j; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add_one(int j, const Self& me, float& x, float& y, float& z) const {
-    add(share_of(j), position[j], moving[j], me, x, y, z);
+    add(position[j], moving[j], me, x, y, z);
   }
   /// Adds the image of particle j behind wall k.
   SIM_FN void add_image(int k, int j, const Self& me, float& x, float& y, float& z) const {
     const Vec4 other = position[j];
     if (images.between(k, me.at, other))
-      add(share_of(j), images.place(k, other), images.velocity(k, moving[j]), me, x, y, z);
+      add(images.place(k, other), images.velocity(k, moving[j]), me, x, y, z);
   }
 
   template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) {
-        if constexpr (First) residual[~i] = direction[~i] = {0, 0, 0, 0};
-        return;
-      }
-    }
+  SIM_FN void operator()(int i, Team team) const {
     const Vec4 at = position[i];
     if (at.w > widest) {
       if constexpr (First) residual[i] = direction[i] = {0, 0, 0, 0};
       return;
     }
-    const Self me{at, moving[i], share_of(i), PairKernel<OneLevel>(at.w)};
+    const Self me{at, moving[i], PairKernel<OneLevel>(at.w)};
     float x = 0;
     float y = 0;
     float z = 0;
-    const int count = neighbours.size(slot);
-    const NeighbourRun run = neighbours.run(slot);
+    const int count = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
     SIM_LANES(x, y, z)
     for (int n = team.rank(); n < count; n += Team::size) add_one(run[n], me, x, y, z);
     for (int k = 0; k < images.walls.count; ++k) {
@@ -195,7 +129,7 @@ struct Friction {
     Vec3 change{scale * x, scale * y, scale * z};
     if constexpr (Bodies::there) change = change - bodies.template taken<First>(at, xyz(me.moving));
     if constexpr (First) {
-      residual[i] = direction[i] = with_w(change, me.share);
+      residual[i] = direction[i] = with_w(change, 0);
     } else {
       bent[i] = with_w(xyz(me.moving) - change, 0);
     }
@@ -227,7 +161,7 @@ struct Advance {
     if (position[i].w > widest) return 0;
     velocity[i] = with_w(xyz(velocity[i]) + step->along * xyz(direction[i]), 0);
     const Vec3 r = xyz(residual[i]) - step->along * xyz(bent[i]);
-    residual[i] = with_w(r, residual[i].w);
+    residual[i] = with_w(r, 0);
     return mass_units_of(position[i].w, finest_support) * dot(r, r);
   }
 };
@@ -238,7 +172,7 @@ struct Turn {
   Vec4* direction;
   const ConjugateStep* step;
   SIM_FN void operator()(int i) const {
-    direction[i] = with_w(xyz(residual[i]) + step->turn * xyz(direction[i]), residual[i].w);
+    direction[i] = with_w(xyz(residual[i]) + step->turn * xyz(direction[i]), 0);
   }
 };
 
@@ -246,12 +180,10 @@ using ViscosityColumns =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
                columns(Column::PredictedNext, Column::VelocityNext, Column::Normal, Column::Velocity)>;
 
-template <bool First, bool OneLevel, class Selection, class Bodies>
-Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, ViscosityColumns p,
-                                                         Selection select, Bodies bodies) {
+template <bool First, bool OneLevel, class Bodies>
+Friction<First, OneLevel, Bodies> friction_of(FluidState& state, ViscosityColumns p, Bodies bodies) {
   const auto& k = state.parameters;
-  return {.select = select,
-          .position = p.position(),
+  return {.position = p.position(),
           .moving = First ? p.velocity() : p.velocity_next(),
           .neighbours = state.neighbours.view(),
           .images = {state.walls, 1 - 2 * k.effects[EffectOption::ViscosityStick]},
@@ -278,8 +210,8 @@ int steps_of(const FluidState& state) {
   return static_cast<int>(std::ceil(std::min(std::max(16.0f, needed), 200.0f)));
 }
 
-template <bool OneLevel, class Selection, class Bodies>
-void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodies) {
+template <bool OneLevel, class Bodies>
+void solve(FluidState& state, ViscosityColumns p, Bodies bodies) {
   const int n = p.size();
   const float finest = state.finest_support;
   const float widest = state.widest_support(EffectOption::ViscosityCoarsest);
@@ -292,16 +224,13 @@ void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodie
   Vec4* const residual = p.predicted_next();
   Vec4* const direction = p.velocity_next();
   Vec4* const bent = p.normal();
-  if constexpr (!Selection::everyone)
-    for_each_team("viscous shares", n,
-                  Shares<OneLevel>{select, p.position(), state.neighbours.view(), bent, widest});
-  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select, bodies));
+  for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, bodies));
   solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest, widest},
              TakeRest<Bodies>{{step}, bodies});
   const int steps = steps_of(state);
   for (int s = 0; s < steps; ++s) {
     if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
-    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select, bodies));
+    for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, bodies));
     solver.sum("viscous step", n, p.capacity(), Product{p.position(), direction, bent, finest, widest},
                TakeStep<Bodies>{{step}, bodies});
     solver.sum("viscous advance", n, p.capacity(),
@@ -317,16 +246,15 @@ void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodie
   }
 }
 
-template <class Selection, class Bodies>
-void solve_for(FluidState& state, ViscosityColumns p, Selection select, Bodies bodies) {
-  state.one_level ? solve<true>(state, p, select, bodies) : solve<false>(state, p, select, bodies);
+template <class Bodies>
+void solve_for(FluidState& state, ViscosityColumns p, Bodies bodies) {
+  state.one_level ? solve<true>(state, p, bodies) : solve<false>(state, p, bodies);
 }
 
-template <class Selection>
-void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
+void run_viscosity(FluidState& state, ViscosityColumns p) {
   const auto& k = state.parameters;
   const float stick = k.effects[EffectOption::ViscosityStick];
-  if (!state.obstacles.exists() || stick == 0) return solve_for(state, p, select, NoBodies{});
+  if (!state.obstacles.exists() || stick == 0) return solve_for(state, p, NoBodies{});
   auto& o = state.obstacles;
   const BodyListener to = state.effects_listener();
   const bool solved = to.sums || o.free.size() > 0;
@@ -343,12 +271,8 @@ void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
                       .unit = 1 + rate / (StickingBodies::nearest * d * d)};
   const StickingBodies bodies{
       .solids = state.solids(), .rows = rows, .rate = rate, .finest_support = state.finest_support};
-  solve_for(state, p, select, bodies);
+  solve_for(state, p, bodies);
   if (to.sums) for_each("record bodies", rows.count, RecordGained{rows, to, k.dt});
-}
-
-void run_viscosity(FluidState& state, ViscosityColumns p) {
-  state.all_active ? solve_for(state, p, AllParticles{}) : solve_for(state, p, state.active());
 }
 
 }  // namespace

@@ -15,7 +15,6 @@ constexpr float least_slope = 0.03f;
 /// the gradient of noisy values has a random direction.
 struct Smooth {
   static constexpr int sums = 4;
-  static constexpr bool of_all = false;
   const Vec4* curl;
   Vec4* smooth;
   float widest;  ///< largest support of particles on which the effect acts, m
@@ -46,7 +45,6 @@ struct Smooth {
 /// momentum is recorded as Change::Effects; angular momentum increases.
 struct Confine {
   static constexpr int sums = 3;
-  static constexpr bool of_all = false;
   const Vec4* curl;
   const Vec4* smooth;
   Vec4* velocity;

@@ -9,15 +9,10 @@ constexpr float cell_spacings = 10;  ///< edge of the velocity grid's cells, in 
 
 struct ActivateAll {
   std::uint8_t* active;
-  std::uint8_t* rest;
-  SIM_FN void operator()(int i) const {
-    active[i] = 1;
-    rest[i] = 0;
-  }
+  SIM_FN void operator()(int i) const { active[i] = 1; }
 };
 
 /// Chooses the particles that the frame solves: ViP-Fluid, Algorithm 3, lines 8 and 9.
-template <class Boundary>
 struct Choose {
   const Vec4* position;
   const int* id;
@@ -27,59 +22,32 @@ struct Choose {
   const std::uint8_t* age;  ///< frames since a split or merge made it; nullptr if nothing splits or merges
   Vec4* velocity;
   std::uint8_t* active;
-  std::uint8_t* rest;
   int* start_cell;
   float* probability;
-  GridFrame grid, near;
+  GridFrame grid, change_cells;
   const Vec4* mean_velocity;
-  Boundary walls;
-  ActivationRules rules;
+  bool within_frame;
   float beta, dt;
-  std::uint8_t sparse_mark;  ///< value of Active for solved particles with few neighbours
   std::uint32_t frame, seed;
 
   SIM_FN void operator()(int i) const {
+    const Vec3 x = xyz(position[i]);
     const float p = beta + (1 - beta) * range->normalised(importance[i]);
     probability[i] = p;
-    start_cell[i] = near.cell_of(xyz(position[i]));
-    const int count = rest[i] & rest_count_mask;
-    const bool on = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p || must_be_solved(i);
-    const std::uint8_t mark = rest[i] & rest_sparse ? sparse_mark : 1;
-    active[i] = on ? mark : 0;
-    rest[i] = static_cast<std::uint8_t>((rest[i] & ~rest_count_mask) | count_after(count, on));
-    if (on) return;
-    if (!rules.inherit_change) {
-      const CellCorners corners = grid.corners(xyz(position[i]));
-      velocity[i] = with_w(xyz(sample(mean_velocity, level[i] * grid.cells(), corners)), 0);
-    }
+    start_cell[i] = change_cells.cell_of(x);
+    const bool drawn = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p;
+    const Vec4 mean = sample(mean_velocity, level[i] * grid.cells(), grid.corners(x));
+    const bool on = drawn || mean.w == value_unknown || (within_frame && (fresh(i) || fast(i)));
+    active[i] = on ? 1 : 0;
+    if (!on && !within_frame) velocity[i] = with_w(xyz(mean), 0);
   }
-
-  /// Next value of the particle's counter. It counts inactive frames. When the particle is solved after them,
-  /// the counter continues from longest_rest until the particle has been solved least_work times, and then
-  /// becomes 0. At longest_rest or more the particle must be solved; below, it may be inactive.
-  SIM_FN int count_after(int count, bool on) const {
-    if (!on) return count < rest_count_mask ? count + 1 : count;
-    if (rules.longest_rest <= 0 || count == 0) return 0;
-    const int next = (count < rules.longest_rest ? rules.longest_rest : count) + 1;
-    return next < rules.longest_rest + rules.least_work ? next : 0;
-  }
-
-  SIM_FN bool must_be_solved(int i) const {
-    if (rest[i] & rest_nowhere) return true;
-    if (rules.longest_rest > 0 && (rest[i] & rest_count_mask) >= rules.longest_rest) return true;
-    if (!rules.keep_fragile_active) return false;
-    const Vec4 x = position[i];
-    if (age && age[i] == 0) return true;
-    const bool fast = length(xyz(velocity[i])) * dt > 0.5f * x.w;
-    if (rules.within_frame) return fast;
-    return fast || (rest[i] & rest_sparse) || walls.nearest(xyz(x)) < x.w;
-  }
+  SIM_FN bool fresh(int i) const { return age && age[i] == 0; }
+  SIM_FN bool fast(int i) const { return length(xyz(velocity[i])) * dt > 0.5f * position[i].w; }
 };
 
-using ActivationColumns =
-    ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-               columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
-               columns(Column::Saliency, Column::Age)>;
+using ActivationColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                                     columns(Column::Active, Column::StartCell, Column::Velocity),
+                                     columns(Column::Saliency, Column::Age)>;
 
 /// Measures the particles' importance, ViP-Fluid Eq. 12-14, and the range that normalises the importance.
 void measure(FluidState& state, ActivationColumns p) {
@@ -89,58 +57,51 @@ void measure(FluidState& state, ActivationColumns p) {
   measure_importance(a, p, p.saliency(), speed_floor);
 }
 
-template <class Boundary>
-void choose(FluidState& state, ActivationColumns p, Boundary boundary) {
+void choose(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
-  for_each(
-      "choose active", p.size(),
-      Choose<Boundary>{
-          .position = p.position(),
-          .id = p.id(),
-          .level = p.level(),
-          .importance = a.importance.data(),
-          .range = a.range.range(),
-          .age = p.age(),
-          .velocity = p.velocity(),
-          .active = p.active(),
-          .rest = p.rest(),
-          .start_cell = p.start_cell(),
-          .probability = a.probability.data(),
-          .grid = a.grid.frame(),
-          .near = a.near.frame(),
-          .mean_velocity = a.grid.velocity().data(),
-          .walls = boundary,
-          .rules = a.rules,
-          .beta = a.beta,
-          .dt = state.parameters.dt,
-          .sparse_mark = state.parameters.effects[EffectKind::Cohesion] > 0 ? solved_apart : std::uint8_t{1},
-          .frame = a.frame,
-          .seed = a.seed});
+  for_each("choose active", p.size(),
+           Choose{.position = p.position(),
+                  .id = p.id(),
+                  .level = p.level(),
+                  .importance = a.importance.data(),
+                  .range = a.range.range(),
+                  .age = p.age(),
+                  .velocity = p.velocity(),
+                  .active = p.active(),
+                  .start_cell = p.start_cell(),
+                  .probability = a.probability.data(),
+                  .grid = a.grid.frame(),
+                  .change_cells = a.change_cells,
+                  .mean_velocity = a.grid.velocity().data(),
+                  .within_frame = a.rules.within_frame,
+                  .beta = a.beta,
+                  .dt = state.parameters.dt,
+                  .frame = a.frame,
+                  .seed = a.seed});
 }
 
 void run_activation(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const int n = p.size();
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
-  a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
+  a.change_cells = cells_over(state.domain, a.rules.change_spacings * 0.5f * state.finest_support);
+  if (!a.columns_set) a.grid.forget();
   // After splits and merges in weightless water, the stage parting moves all particles, so all are solved.
   const bool parts = state.parameters.weightless() && state.levels.changed;
-  state.all_active =
-      a.beta >= 1 || n == 0 || parts || (a.rules.within_frame && state.parameters.substeps < 2);
-  a.some_rest = !state.all_active;
-  if (!a.columns_set || (state.all_active && !a.all_marked))
-    for_each("activate all", n, ActivateAll{p.active(), p.rest()});
+  const bool one_substep = a.rules.within_frame && state.parameters.substeps < 2;
+  a.some_rest = a.beta < 1 && n > 0 && !parts && !one_substep;
+  if (!a.columns_set || (!a.some_rest && !a.all_marked)) for_each("activate all", n, ActivateAll{p.active()});
   a.columns_set = true;
-  a.all_marked = state.all_active;
-  if (state.all_active) return;
+  a.all_marked = !a.some_rest;
+  state.all_active = !a.some_rest;
+  if (!a.some_rest) return;
   measure(state, p);
   a.probability.resize(static_cast<std::size_t>(n));
-  state.obstacles.exists() ? choose(state, p, state.solids()) : choose(state, p, state.walls);
-  if (!a.rules.inherit_change) return;
-  const GridFrame near = a.near.frame();
-  a.before.measure(p, p.active(),
-                   {{Whose::Solved, near, p.start_cell()},
-                    {a.rules.pressed ? Whose::Resting : Whose::Unused, near, p.start_cell()}});
+  choose(state, p);
+  if (!a.rules.within_frame) return;
+  a.before.measure(
+      p, p.active(),
+      {{Whose::Solved, a.change_cells, p.start_cell()}, {Whose::Resting, a.change_cells, p.start_cell()}});
 }
 
 }  // namespace

@@ -224,7 +224,7 @@ struct FluidState {
   PartClock clock;
   PassClock pass_clock;
 
-  /// Flags of the particles solved in the last frame; nullptr if all were.
+  /// Flags of the particles solved in every substep of the last frame; nullptr if all were.
   const std::uint8_t* last_active() const {
     return activation.columns_set && !activation.all_marked ? particles.all().active.data() : nullptr;
   }
@@ -232,7 +232,7 @@ struct FluidState {
     return {neighbours.view(), lists_by_slot ? activation.slot_of.data() : nullptr};
   }
   ActiveParticles active() {
-    return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
+    return {activation.slots.data(), particles.all().active.data(), activation.rules.within_frame};
   }
   /// The boundaries of a scene with obstacles; other scenes use `walls`. Kernels are templates over both
   /// types, so that kernels of scenes without obstacles contain no obstacle code.

@@ -19,20 +19,14 @@ constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacin
 /// loosen the lattice in proportion to their square. Longer steps would make the fluid swell faster than it
 /// flows (docs/decisions.md).
 constexpr float loosened_in_full = 2;
-template <class Selection>
 struct Loosen {
-  Selection select;
   Vec4* position;
   const float* density;
   const int* id;
   float widest;  ///< largest support of particles on which the effect acts, m
   float less;    ///< limit of the step of thick fluid along each axis, divided by h^2, 1/m
 
-  SIM_FN void operator()(int slot) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) return;
-    }
+  SIM_FN void operator()(int i) const {
     if (density[i] < inside) return;
     const Vec4 at = position[i];
     if (at.w > widest) return;
@@ -54,25 +48,18 @@ struct Loosen {
 using LoosenView =
     ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
 
-template <class Selection>
-void loosen(FluidState& state, LoosenView p, Selection select) {
-  const auto& k = state.parameters;
-  const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
-  for_each("loosen", p.size(),
-           Loosen<Selection>{.select = select,
-                             .position = p.position(),
-                             .density = p.density(),
-                             .id = p.id(),
-                             .widest = state.widest_support(EffectOption::ViscosityCoarsest),
-                             .less = loosening / 4 * std::sqrt(loosened_in_full / diffusion)});
-}
-
 /// Does nothing in weightless fluid, which has no pressure, and with mixed particle sizes, which form no
 /// lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
   if (!state.one_level || k.weightless()) return;
-  state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
+  const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
+  for_each("loosen", p.size(),
+           Loosen{.position = p.position(),
+                  .density = p.density(),
+                  .id = p.id(),
+                  .widest = state.widest_support(EffectOption::ViscosityCoarsest),
+                  .less = loosening / 4 * std::sqrt(loosened_in_full / diffusion)});
 }
 
 }  // namespace

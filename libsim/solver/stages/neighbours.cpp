@@ -17,8 +17,8 @@ void sort(FluidState& state) {
 using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Lists neighbours in a frame that does not solve all particles. Only solved particles need lists, unless
-/// all conduct heat, or the next frame's level update reads the lists.
+/// Lists neighbours in a substep that does not solve all particles. Only solved particles need lists, unless
+/// the next frame's level update reads the lists.
 void list_active(FluidState& state, SubstepView p) {
   const Witness witness = state.witness(p.id(), 0);
   sort(state);
@@ -26,7 +26,7 @@ void list_active(FluidState& state, SubstepView p) {
   state.lists_hold = false;
   state.activation.list_active(p);
   const bool hold = !state.one_level && state.substep + 1 == state.parameters.substeps;
-  if (hold || state.parameters.effects[EffectKind::Heat] > 0) {
+  if (hold) {
     state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
     state.lists_hold = hold;
   } else {

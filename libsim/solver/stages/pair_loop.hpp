@@ -18,12 +18,11 @@ struct NeighbourPair {
 };
 
 /// A term that adds nothing, and the interface of all terms. `sums`: how many of the four sums it uses.
-/// `of_all`: true if unsolved particles have sums too. takes(): true if a particle of this support has sums.
+/// takes(): true if a particle of this support has sums.
 /// Self: data read once for particle i. add(): adds a neighbour. finish(): called by one lane after all
 /// neighbours. skip(): for particles without sums.
 struct NoTerm {
   static constexpr int sums = 0;
-  static constexpr bool of_all = false;
   SIM_FN bool takes(float) const { return false; }
   struct Self {};
   SIM_FN Self self(int) const { return {}; }
@@ -32,9 +31,8 @@ struct NoTerm {
   SIM_FN void skip(int) const {}
 };
 
-template <bool OneLevel, class Selection, class First, class Second>
+template <bool OneLevel, class First, class Second>
 struct PairLoop {
-  Selection select;
   const Vec4* position;
   Neighbours neighbours;
   First first;
@@ -70,16 +68,10 @@ struct PairLoop {
   }
 
   template <class Team>
-  SIM_FN void operator()(int slot, Team team) const {
-    int i = select(slot);
-    bool solved = true;
-    if constexpr (!Selection::everyone) {
-      solved = i >= 0;
-      if (!solved) i = ~i;
-    }
+  SIM_FN void operator()(int i, Team team) const {
     const Vec4 at = position[i];
-    const bool has_first = (First::of_all || solved) && first.takes(at.w);
-    const bool has_second = (Second::of_all || solved) && second.takes(at.w);
+    const bool has_first = first.takes(at.w);
+    const bool has_second = second.takes(at.w);
     if (!has_first) first.skip(i);
     if (!has_second) second.skip(i);
     if (!has_first && !has_second) return;
@@ -92,8 +84,8 @@ struct PairLoop {
     float b1 = 0;
     float b2 = 0;
     float b3 = 0;
-    const int count = neighbours.size(slot);
-    const NeighbourRun run = neighbours.run(slot);
+    const int count = neighbours.size(i);
+    const NeighbourRun run = neighbours.run(i);
     SIM_LANES(a0, a1, a2, a3, b0, b1, b2, b3)
     for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, a0, a1, a2, a3, b0, b1, b2, b3);
     a0 = sum<First, 1>(team, a0);
@@ -112,24 +104,18 @@ struct PairLoop {
 
 using PairView = Reads<Column::Position, Column::Neighbours>;
 
-template <bool OneLevel, class Selection, class First, class Second>
-void launch_pair_loop(const char* label, FluidState& state, PairView p, Selection select, First first,
-                      Second second) {
-  for_each_team(label, p.size(),
-                PairLoop<OneLevel, Selection, First, Second>{.select = select,
-                                                             .position = p.position(),
-                                                             .neighbours = state.neighbours.view(),
-                                                             .first = first,
-                                                             .second = second});
+template <bool OneLevel, class First, class Second>
+void launch_pair_loop(const char* label, FluidState& state, PairView p, First first, Second second) {
+  for_each_team(
+      label, p.size(),
+      PairLoop<OneLevel, First, Second>{
+          .position = p.position(), .neighbours = state.neighbours.view(), .first = first, .second = second});
 }
 /// `label` names the pass in errors and profiles.
 template <class First, class Second = NoTerm>
 void run_pair_loop(const char* label, FluidState& state, PairView p, First first, Second second = {}) {
-  const auto go = [&](auto select) {
-    state.one_level ? launch_pair_loop<true>(label, state, p, select, first, second)
-                    : launch_pair_loop<false>(label, state, p, select, first, second);
-  };
-  state.all_active ? go(AllParticles{}) : go(state.active());
+  state.one_level ? launch_pair_loop<true>(label, state, p, first, second)
+                  : launch_pair_loop<false>(label, state, p, first, second);
 }
 
 }  // namespace sim::SIM_BACKEND

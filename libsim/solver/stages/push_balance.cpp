@@ -231,9 +231,9 @@ void balance_push(FluidState& state, ClampView p) {
   auto& coarse = state.coarse;
   coarse.balance.resize(1);
   coarse.balance.zero();
-  // Without `pressed`, unsolved particles do not move with the coarse pressure. PushBalance::mass then stays
-  // 0, so that no particle is corrected.
-  const bool pressed = state.all_active || state.activation.rules.pressed;
+  // In a frame with whole-frame rests, unsolved particles do not move with the coarse pressure.
+  // PushBalance::mass then stays 0, so that no particle is corrected.
+  const bool pressed = state.all_active || state.activation.rules.within_frame;
   if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,
                   SumPush{.predicted = p.predicted(),

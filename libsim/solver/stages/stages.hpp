@@ -30,7 +30,10 @@ struct Demand {
   bool saliency = false;          ///< saliency and targets are computed by ViP-Fluid, Eq. 1-9
   bool saliency_parts = false;    ///< an output needs the parts of saliency
   bool activation = false;        ///< temporal acceleration selects the solved particles
-  bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
+  /// The effect because of which there is no activation, although the method accelerates in time: effects
+  /// other than foam change velocities in every substep, so that no particle may rest.
+  EffectKind keeps_all_solved = no_effect;
+  bool wall_impulse = false;  ///< an output needs the walls' impulse on the water
 };
 
 /// True if the scene lists the effect with a coefficient other than 0, and its water may have a level on

@@ -4,14 +4,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Mean velocity change, over the frame, of the solved particles of a cell and level, minus the mean change
-/// that the cell's unsolved particles already have. An entry without solved particles takes the mean of the
-/// cell's other levels.
-struct MeanChange {
+/// The velocity change that the resting particles of a cell and level lack: the mean change, over the frame,
+/// of the particles solved in every substep, minus that of the resting ones. An entry without particles of
+/// either kind takes the mean of the cell's other levels.
+struct MissingChange {
   const MomentumSum* before;
   const MomentumSum* after;
-  const MomentumSum* others_before;  ///< nullptr unless forces act on unsolved particles
-  const MomentumSum* others_after;
+  const MomentumSum* resting_before;
+  const MomentumSum* resting_after;
   Vec4* change;
   int cells;
 
@@ -21,10 +21,10 @@ struct MeanChange {
     change[i] = own;
   }
   SIM_FN Vec4 of(int i) const {
-    if (before[i].mass == 0 || after[i].mass == 0) return {0, 0, 0, value_unknown};
-    Vec3 out = mean_velocity(after[i]) - mean_velocity(before[i]);
-    if (others_before && others_before[i].mass > 0 && others_after[i].mass > 0)
-      out += mean_velocity(others_before[i]) - mean_velocity(others_after[i]);
+    for (const auto* sums : {before, after, resting_before, resting_after})
+      if (sums[i].mass == 0) return {0, 0, 0, value_unknown};
+    const Vec3 out = mean_velocity(after[i]) - mean_velocity(before[i]) + mean_velocity(resting_before[i]) -
+                     mean_velocity(resting_after[i]);
     return with_w(out, value_measured);
   }
   SIM_FN Vec4 of_others(int cell) const {
@@ -41,9 +41,28 @@ struct MeanChange {
   }
 };
 
-/// ViP-Fluid, Algorithm 3, line 15, after all solved particles have moved: unsolved particles take their
-/// velocity from the grid. Their displacement is corrected as if the change had come in equal parts in the
-/// frame's substeps.
+/// Gives the particles that rested within the frame the velocity change that they lack, interpolated at their
+/// positions at the frame's start, about `frame_dt` earlier.
+struct CatchUp {
+  const std::uint8_t* active;
+  const std::uint8_t* level;
+  const Vec4* position;
+  Vec4* velocity;
+  GridFrame grid;
+  const Vec4* change;
+  float frame_dt;
+
+  SIM_FN void operator()(int i) const {
+    if (active[i]) return;
+    const Vec3 v = xyz(velocity[i]);
+    const Vec3 start = xyz(position[i]) - frame_dt * v;
+    velocity[i] = with_w(v + xyz(sample(change, level[i] * grid.cells(), grid.corners(start))), 0);
+  }
+};
+
+/// ViP-Fluid, Algorithm 3, line 15, for whole-frame rests, after all solved particles have moved: unsolved
+/// particles take the mean velocity of the grid. Their displacement is corrected as if the change had come in
+/// equal parts in the frame's substeps.
 template <class Boundary>
 struct Inherit {
   const std::uint8_t* active;
@@ -52,118 +71,96 @@ struct Inherit {
   Vec4* velocity;
   Guards* guards;
   GridFrame grid;
-  const Vec4* change;
   const Vec4* mean_velocity;
   Boundary walls;
-  float frame_dt, way_dt, wall_gap, mean_share;
+  float way_dt, wall_gap;
 
   SIM_FN void operator()(int i) const {
     if (active[i]) return;
     const float h = position[i].w;
     Vec3 x = xyz(position[i]);
-    const Vec3 v = xyz(velocity[i]);
-    Vec3 gain{0, 0, 0};
-    if (mean_share < 1) gain = change_at(i, x - frame_dt * v);
-    gain += mean_share * (velocity_at(i, x, v + gain) - v - gain);
-    velocity[i] = with_w(v + gain, 0);
-    x += way_dt * gain;
+    const Vec4 mean = sample(mean_velocity, level[i] * grid.cells(), grid.corners(x));
+    if (mean.w == value_unknown) return;
+    x += way_dt * (xyz(mean) - xyz(velocity[i]));
+    velocity[i] = with_w(xyz(mean), 0);
     if (walls.project(x, xyz(position[i]), wall_gap * h / 2))
       atomic_add(&guards->wall_projected, std::uint64_t{1});
     position[i] = with_w(x, h);
   }
-  SIM_FN Vec3 change_at(int i, Vec3 x) const {
-    return xyz(sample(change, level[i] * grid.cells(), grid.corners(x)));
-  }
-  SIM_FN Vec3 velocity_at(int i, Vec3 x, Vec3 otherwise) const {
-    const Vec4 v = sample(mean_velocity, level[i] * grid.cells(), grid.corners(x));
-    return v.w == value_unknown ? otherwise : xyz(v);
-  }
-};
-
-/// Marks solved particles of low density: spray and, with surface tension, the surface. If
-/// ActivationRules::keep_fragile_active, they are solved in the next frame too.
-struct MarkSparse {
-  const std::uint8_t* active;
-  const float* density;
-  std::uint8_t* rest;
-  float sparse;  ///< rho / rho_0 below which a particle is marked
-  SIM_FN void operator()(int i) const {
-    if (active[i])
-      rest[i] =
-          static_cast<std::uint8_t>((rest[i] & rest_count_mask) | (density[i] < sparse ? rest_sparse : 0));
-  }
 };
 
 using VelocityGridColumns =
-    ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Density, Column::Active,
-                       Column::Rest, Column::StartCell),
-               columns(Column::Velocity, Column::Position, Column::Rest)>;
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Active, Column::StartCell),
+               columns(Column::Velocity, Column::Position)>;
 
-/// Computes the mean velocities V, the changes that unsolved particles inherit, and the marks of particles of
-/// low density: one launch over the particles, one over the cells' sums.
+/// Computes the mean velocities V, and the changes that particles lack after they rested within the frame:
+/// one launch over the particles, one over the cells' sums.
 void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
-  const bool changes = a.some_rest && a.rules.inherit_change;
-  const bool pressed = changes && a.rules.pressed;
-  const bool means = changes && a.rules.damping > 0;
-  const GridFrame near = a.near.frame();
+  const bool changes = a.rests_within_frame();
+  const auto only_if_changes = [&](Whose whose) { return changes ? whose : Whose::Unused; };
+  const bool whole_frame_rests = a.some_rest && !a.rules.within_frame;
   a.after.measure(p, p.active(),
-                  {{changes ? Whose::Solved : Whose::Unused, near, p.start_cell()},
-                   {pressed ? Whose::Resting : Whose::Unused, near, p.start_cell()},
-                   {a.some_rest && !a.rules.within_frame ? Whose::Solved : Whose::All, a.grid.frame()},
-                   {means ? Whose::Solved : Whose::Unused, near}});
-  const int changing = changes ? grid_levels * near.cells() : 0;
+                  {{only_if_changes(Whose::Solved), a.change_cells, p.start_cell()},
+                   {only_if_changes(Whose::Resting), a.change_cells, p.start_cell()},
+                   {whole_frame_rests ? Whose::Solved : Whose::All, a.grid.frame()}});
+  const int cells = a.change_cells.cells();
+  const int changing = changes ? grid_levels * cells : 0;
   a.change.resize(static_cast<std::size_t>(changing));
-  const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
-  for_each_pass(
-      "means and marks",  //
-      a.grid.finish_velocity(a.after.of(sum_of_grid)), a.near.finish_velocity(a.after.of(sum_of_near)),
-      Pass<MeanChange>{changing,
-                       {.before = a.before.of(sum_of_solved),
-                        .after = a.after.of(sum_of_solved),
-                        .others_before = a.before.of(sum_of_resting),
-                        .others_after = a.after.of(sum_of_resting),
-                        .change = a.change.data(),
-                        .cells = near.cells()}},
-      Pass<MarkSparse>{p.size(),
-                       {p.active(), p.density(), p.rest(), tension ? surface_density : sparse_density}});
+  for_each_pass("mean velocities",  //
+                a.grid.finish_velocity(a.after.of(sum_of_grid)),
+                Pass<MissingChange>{changing,
+                                    {.before = a.before.of(sum_of_solved),
+                                     .after = a.after.of(sum_of_solved),
+                                     .resting_before = a.before.of(sum_of_resting),
+                                     .resting_after = a.after.of(sum_of_resting),
+                                     .change = a.change.data(),
+                                     .cells = cells}});
+}
+
+void catch_up(FluidState& state, VelocityGridColumns p) {
+  auto& a = state.activation;
+  for_each("catch up", p.size(),
+           CatchUp{.active = p.active(),
+                   .level = p.level(),
+                   .position = p.position(),
+                   .velocity = p.velocity(),
+                   .grid = a.change_cells,
+                   .change = a.change.data(),
+                   .frame_dt = state.parameters.dt * static_cast<float>(state.parameters.substeps)});
 }
 
 template <class Boundary>
 void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  // Without inherit_change the mean velocities come from Activation::grid, with the cells of ViP-Fluid.
-  const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
   const auto substeps = static_cast<float>(k.substeps);
-  const float idle = 1 - a.beta;
-  const float frame_dt = k.dt * substeps;
   for_each("inherit", p.size(),
            Inherit<Boundary>{.active = p.active(),
                              .level = p.level(),
                              .position = p.position(),
                              .velocity = p.velocity(),
                              .guards = state.guard(),
-                             .grid = from.frame(),
-                             .change = a.change.data(),
-                             .mean_velocity = from.velocity().data(),
+                             .grid = a.grid.frame(),
+                             .mean_velocity = a.grid.velocity().data(),
                              .walls = boundary,
-                             .frame_dt = frame_dt,
-                             .way_dt = a.rules.within_frame ? 0 : frame_dt * (substeps + 1) / (2 * substeps),
-                             .wall_gap = k.wall_gap,
-                             .mean_share = a.rules.inherit_change ? a.rules.damping * idle * idle : 1});
+                             .way_dt = k.dt * (substeps + 1) / 2,
+                             .wall_gap = k.wall_gap});
 }
 
 /// ViP-Fluid, Algorithm 3, lines 4-5 and 13-17. Two passes are needed, because line 15 reads the grid that
 /// line 13 writes.
 void run_velocity_grid(FluidState& state, VelocityGridColumns p) {
-  Activation& a_ = state.activation;
+  auto& a = state.activation;
   find_means(state, p);
-  if (a_.some_rest)
+  if (a.rests_within_frame()) {
+    catch_up(state, p);
+  } else if (a.some_rest) {
     state.obstacles.exists() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
-  state.activation.grid.update_energy(p);
+  }
+  a.grid.update_energy(p);
+  a.some_rest = false;
   state.all_active = true;
-  a_.some_rest = false;
 }
 
 }  // namespace

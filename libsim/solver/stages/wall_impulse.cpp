@@ -26,6 +26,18 @@ struct RecordBoth {
 SIM_FN RecordClamp record_of(const WallRecord& to, Vec4 particle) { return {to, particle}; }
 SIM_FN RecordBoth record_of(const Records& to, Vec4 particle) { return {to, particle}; }
 
+/// The same record for a push whose displacement counts as velocity over this number of substeps
+/// (FluidState::time_of_rest).
+SIM_FN WallRecord over(WallRecord to, float substeps) {
+  to.times /= substeps;
+  return to;
+}
+SIM_FN Records over(Records to, float substeps) {
+  to.walls.times /= substeps;
+  to.bodies.times /= substeps;
+  return to;
+}
+
 Records records(FluidState& state, float times) {
   return {state.impulse.record_to(times), state.impulse.on(), state.body_record(times)};
 }
@@ -97,6 +109,7 @@ struct MissingDensity {
   const float* lambda;
   Boundary boundary;
   WallRecord to;
+  TimeOfRest time;
   float mass_unit;  ///< mass of a particle of level 0, kg
   SIM_FN void operator()(int i) const {
     if (lambda[i] == 0) return;
@@ -105,7 +118,8 @@ struct MissingDensity {
     const float present = beside_bodies(boundary, xyz(at), at.w);
     for (int k = 0; k < walls.count; ++k) {
       const float slope = present * walls.missing_slope(k, xyz(at), at.w);
-      if (slope != 0) to.add(k, WallPart::MissingDensity, xyz(at), at.w, lambda[i] * slope / mass_unit);
+      if (slope != 0)
+        over(to, time(i)).add(k, WallPart::MissingDensity, xyz(at), at.w, lambda[i] * slope / mass_unit);
     }
   }
 };
@@ -117,6 +131,7 @@ struct MissingInBodies {
   const float* lambda;
   Solids solids;
   BodyListener to;
+  TimeOfRest time;
   float mass_unit;
   SIM_FN void operator()(int i) const {
     if (lambda[i] == 0) return;
@@ -125,7 +140,7 @@ struct MissingInBodies {
       const Body::Near near = solids.near(b, xyz(at));
       if (near.distance >= at.w) continue;
       const Vec3 gradient = solids.missing_gradient(b, xyz(at), at.w);
-      to.add(b, at, xyz(at) - near.distance * near.normal, (lambda[i] / mass_unit) * gradient);
+      to.add(b, at, xyz(at) - near.distance * near.normal, (lambda[i] / (mass_unit * time(i))) * gradient);
     }
   }
 };
@@ -140,6 +155,7 @@ void missing_density(FluidState& state, ConstraintView p, Boundary boundary) {
                                     .lambda = p.lambda(),
                                     .boundary = boundary,
                                     .to = state.impulse.record_to(times_taken(k, state.iteration)),
+                                    .time = state.time_of_rest(),
                                     .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 void record_missing_density(FluidState& state, ConstraintView p) {
@@ -151,6 +167,7 @@ void record_missing_density(FluidState& state, ConstraintView p) {
                            .lambda = p.lambda(),
                            .solids = state.solids(),
                            .to = state.body_record(times_taken(k, state.iteration)),
+                           .time = state.time_of_rest(),
                            .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
@@ -293,12 +310,13 @@ struct Clamp {
   Vec4* next;  ///< nullptr if PredictedNext must not change
   Boundary walls;
   Recorder to;
+  TimeOfRest time;
   Guards* guards;
   float wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, record_of(to, at))) {
+    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, record_of(over(to, time(i)), at))) {
       atomic_add(&guards->wall_projected, std::uint64_t{1});
       predicted[i] = with_w(x, at.w);
     }
@@ -309,13 +327,16 @@ struct Clamp {
 template <class Boundary, class Recorder>
 void clamp(FluidState& state, ClampView p, const Vec4* from, bool in_both, Boundary boundary, Recorder to) {
   for_each("clamp and record", p.size(),
-           Clamp<Boundary, Recorder>{.predicted = p.predicted(),
-                                     .from = from,
-                                     .next = in_both ? p.predicted_next() : nullptr,
-                                     .walls = boundary,
-                                     .to = to,
-                                     .guards = state.guard(),
-                                     .wall_gap = state.parameters.wall_gap});
+           Clamp<Boundary, Recorder>{
+               .predicted = p.predicted(),
+               .from = from,
+               .next = in_both ? p.predicted_next() : nullptr,
+               .walls = boundary,
+               .to = to,
+               // A projection, unless it is the coarse pressure, which acts in every substep.
+               .time = in_both ? TimeOfRest{} : state.time_of_rest(),
+               .guards = state.guard(),
+               .wall_gap = state.parameters.wall_gap});
 }
 
 Stage account(const char* name, Phase phase) {

@@ -22,8 +22,8 @@ FluidState ready(const std::vector<Drop>& all, float beta) {
   a.grid.fit(state.domain, 5 * h);
   update_velocity(a.grid, state);
   a.grid.update_energy(MovingView(state.particles));
+  a.columns_set = true;  // else the stage discards the grid's values
   a.beta = beta;
-  a.rules.keep_fragile_active = false;
   return state;
 }
 
@@ -75,85 +75,73 @@ SIM_TEST(Activation, WithBetaOneEveryoneIsSolved) {
   for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
-SIM_TEST(Activation, RestsAreNoLongerAndWorkNoShorterThanTheRulesAllow) {
-  constexpr int never = 1000;
-  for (const int most : {1, 3}) {
-    for (const int least : {1, 2, 4}) {
-      auto state = ready(drops(2000, 5), 0.05f);
-      state.activation.rules.longest_rest = most;
-      state.activation.rules.least_work = least;
-      std::vector<int> rested(2000, 0);
-      std::vector<int> worked(2000, never);
-      int longest = 0;
-      int shortest = never;
-      for (std::uint32_t frame = 0; frame < 24; ++frame) {
-        state.activation.frame = frame;
-        activation_stage().run(state);
-        const auto active = state.particles.all().active.to_host();
-        for (std::size_t i = 0; i < active.size(); ++i) {
-          if (!active[i] && rested[i] == 0) shortest = std::min(shortest, worked[i]);
-          rested[i] = active[i] ? 0 : rested[i] + 1;
-          worked[i] = active[i] ? std::min(worked[i] + 1, never) : 0;
-          longest = std::max(longest, rested[i]);
-        }
-        velocity_grid_stage().run(state);
-      }
-      EXPECT_EQ(longest, most);
-      EXPECT_EQ(shortest, least);
+SIM_TEST(Activation, AFrameOfOneSubstepSolvesAll) {
+  auto state = ready(drops(500, 2), 0.1f);
+  state.parameters.substeps = 1;
+  activation_stage().run(state);
+  EXPECT_TRUE(state.all_active);
+  EXPECT_FALSE(state.activation.rests_within_frame());
+}
+
+SIM_TEST(Activation, EverySecondSubstepSolvesAllAndTheLastOneDoes) {
+  auto state = ready(drops(500, 2), 0.1f);
+  for (const int substeps : {2, 3, 4, 5}) {
+    state.parameters.substeps = substeps;
+    activation_stage().run(state);
+    for (int k = 0; k < substeps; ++k) {
+      state.begin_substep(k);
+      EXPECT_EQ(state.all_active, (substeps - k) % 2 == 1) << k << " of " << substeps;
+      EXPECT_EQ(state.after_rest(), state.all_active && k > 0) << k << " of " << substeps;
     }
+    velocity_grid_stage().run(state);
+    EXPECT_FALSE(state.activation.rests_within_frame());
+  }
+  state.activation.rules.within_frame = false;
+  activation_stage().run(state);
+  for (int k = 0; k < 5; ++k) {
+    state.begin_substep(k);
+    EXPECT_FALSE(state.all_active);
+    EXPECT_FALSE(state.after_rest());
   }
 }
 
-SIM_TEST(Activation, KeepsTheFragileActive) {
-  // Slow drops far from the walls may rest; drops at a wall, fast, sparse, new or without a grid value may
-  // not.
+SIM_TEST(Activation, FastAndNewParticlesAreSolved) {
   auto all = drops(4000, 6);
   for (auto& drop : all) drop.v = {0.01f * drop.v.x, 0, 0};
-  auto state = ready(all, 1);
-  state.activation.rules.keep_fragile_active = true;
-  state.walls.planes[state.walls.count++] = {{1, 0, 0}, 0};
+  auto state = ready(all, 0.02f);
   auto& p = state.particles;
   auto velocity = p.all().velocity.to_host();
   auto age = p.all().age.to_host();
-  auto density = p.all().density.to_host();
   for (std::size_t i = 0; i < 200; ++i) {
     velocity[i].y = 100;
     age[i + 200] = 0;
-    density[i + 400] = 0.3f;
   }
   p.all().age.from_host(age);
-  p.all().density.from_host(density);
-  activation_stage().run(state);
-  velocity_grid_stage().run(state);  // marks sparse particles
   p.all().velocity.from_host(velocity);
-  state.activation.beta = 0.02f;
-  activation_stage().run(state);
-  const auto active = p.all().active.to_host();
-  const auto position = p.all().position.to_host();
-  int resting = 0;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    const bool fragile = i < 600 || position[i].x < position[i].w;
-    EXPECT_TRUE(active[i] || !fragile) << i;
-    resting += !active[i];
+  for (const bool within_frame : {true, false}) {
+    state.activation.rules.within_frame = within_frame;
+    activation_stage().run(state);
+    const auto active = p.all().active.to_host();
+    EXPECT_EQ(std::count(active.begin(), active.begin() + 400, 0) == 0, within_frame);
+    EXPECT_GT(std::count(active.begin() + 400, active.end(), 0), 500);
+    velocity_grid_stage().run(state);
   }
-  EXPECT_GT(resting, 500);
 }
 
 SIM_TEST(Activation, UnknownPlacesAreSolved) {
   auto state = state_of(drops(1000, 6));
   state.activation.beta = 0.02f;
-  state.activation.rules.keep_fragile_active = false;
   activation_stage().run(state);  // the grid is still empty
   for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
 /// The test changes the velocity of solved particles by `gain`. The stage must give resting particles the
-/// same change, so that all end with the same velocity.
-void inherits(bool change) {
+/// same change, so that all end with the same velocity. Those that rested for the whole frame also move.
+void takes_the_change(bool within_frame) {
   auto all = drops(20000, 9);
   for (auto& drop : all) drop.v = {1, 2, 3};
   auto state = ready(all, 0.4f);
-  state.activation.rules.inherit_change = change;
+  state.activation.rules.within_frame = within_frame;
   activation_stage().run(state);
   const Vec3 gain{0.25f, -0.5f, 0};
   auto& p = state.particles;
@@ -169,7 +157,7 @@ void inherits(bool change) {
   const auto position = p.all().position.to_host();
   // The frame has 3 substeps of 1/180 s with an equal change of the velocity in each. The mean velocity over
   // the substeps includes 2/3 of the whole change, which gives the displacement.
-  const float way = 2.0f / 3 / 60;
+  const float way = within_frame ? 0 : 2.0f / 3 / 60;
   int resting = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
     EXPECT_NEAR(after[i].x, 1.25f, 1e-5f);
@@ -181,8 +169,56 @@ void inherits(bool change) {
   }
   EXPECT_GT(resting, 1000);
 }
-SIM_TEST(Inherit, TheMeanChangeOfTheCell) { inherits(true); }
-SIM_TEST(Inherit, TheMeanVelocityOfTheCell) { inherits(false); }
+SIM_TEST(EndOfRest, WithinTheFrameGivesTheChangeOfTheCell) { takes_the_change(true); }
+SIM_TEST(EndOfRest, OfTheWholeFrameGivesTheVelocityOfTheCell) { takes_the_change(false); }
+
+/// Resting particles already gained a part of the change: they get the rest of it.
+SIM_TEST(EndOfRest, GivesOnlyWhatIsMissing) {
+  auto all = drops(20000, 9);
+  for (auto& drop : all) drop.v = {1, 0, 0};
+  auto state = ready(all, 0.4f);
+  activation_stage().run(state);
+  auto& p = state.particles;
+  auto velocity = p.all().velocity.to_host();
+  const auto active = p.all().active.to_host();
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i].y = active[i] ? 0.5f : 0.2f;
+  p.all().velocity.from_host(velocity);
+  velocity_grid_stage().run(state);
+  const auto after = p.all().velocity.to_host();
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_NEAR(after[i].y, 0.5f, 1e-5f) << i;
+}
+
+/// After a rest of one substep the correction by the projections counts as a velocity over two substeps, and
+/// the move by the coarse pressure over one.
+SIM_TEST(EndOfRest, CorrectionsCountOverTwoSubsteps) {
+  auto state = ready(drops(1000, 9), 0.4f);
+  state.parameters.most_speed = 1000;
+  state.parameters.substeps = 2;
+  activation_stage().run(state);
+  state.begin_substep(1);
+  ASSERT_TRUE(state.after_rest());
+  auto& p = state.particles.all();
+  const float dt = state.parameters.dt;
+  const auto position = p.position.to_host();
+  const auto before = p.velocity.to_host();
+  auto predicted = position;
+  for (std::size_t i = 0; i < predicted.size(); ++i)
+    predicted[i] = with_w(xyz(position[i]) + dt * (xyz(before[i]) + Vec3{0.25f, 0, 0}), position[i].w);
+  p.predicted.from_host(predicted);
+  before_projections_stage().run(state);
+  for (Vec4& x : predicted) x.y += dt;
+  p.predicted.from_host(predicted);
+  velocity_stage().run(state);
+  const auto active = p.active.to_host();
+  const auto after = p.velocity.to_host();
+  int resting = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    resting += !active[i];
+    EXPECT_NEAR(after[i].x - before[i].x, 0.25f, 2e-3f);
+    EXPECT_NEAR(after[i].y - before[i].y, active[i] ? 1 : 0.5f, 2e-3f);
+  }
+  EXPECT_GT(resting, 100);
+}
 
 SIM_TEST(Importance, IsEquation12To14OnALinearFlow) {
   // One particle in the centre of each cell, with v = 2 k along x in the cells of column k: |dV| = 2 in every

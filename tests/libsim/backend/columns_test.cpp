@@ -115,7 +115,7 @@ SIM_TEST(Columns, FollowTheirParticlesWhenTheyAreKept) {
   c.position.zero();
   c.velocity.zero();
   c.predicted.zero();
-  for (auto* bytes : {&c.target, &c.history, &c.waiting, &c.active, &c.rest}) bytes->zero();
+  for (auto* bytes : {&c.target, &c.history, &c.waiting, &c.active}) bytes->zero();
   c.saliency_parts.zero();
   c.unrest.zero();
   c.swirl.zero();

@@ -54,7 +54,6 @@ inline FluidState state_of(const std::vector<Drop>& drops) {
   p.all().level.from_host(level);
   p.all().age.from_host(std::vector<std::uint8_t>(drops.size(), 255));
   p.all().active.from_host(std::vector<std::uint8_t>(drops.size(), 1));
-  p.all().rest.zero();
   p.all().saliency.zero();
   p.all().density.from_host(std::vector<float>(drops.size(), 1));
   return state;

@@ -45,7 +45,6 @@ FluidState crowd(int n, bool resting) {
   p.all().ease.from_host(std::vector<float>(static_cast<std::size_t>(n), -1));
   p.all().lambda.zero();
   p.all().density.from_host(std::vector<float>(static_cast<std::size_t>(n), 1));
-  p.all().rest.zero();
   p.all().saliency.zero();
   return state;
 }

@@ -56,27 +56,6 @@ inline std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
   return state.particles.all().velocity.to_host();
 }
 
-/// Marks the particles with active = 0 as not solved, and sorts the neighbour lists by slot: solved particles
-/// first.
-inline void let_rest(FluidState& state, const std::vector<std::uint8_t>& active) {
-  std::vector<int> slots, others;
-  for (int i = 0; i < state.particles.size(); ++i) {
-    if (active[static_cast<std::size_t>(i)]) {
-      slots.push_back(i);
-    } else {
-      others.push_back(~i);
-    }
-  }
-  slots.insert(slots.end(), others.begin(), others.end());
-  const auto of_particle = state.neighbours.lists();
-  std::vector<std::vector<int>> of_slot;
-  for (const int i : slots) of_slot.push_back(of_particle[static_cast<std::size_t>(i < 0 ? ~i : i)]);
-  state.neighbours.assign(of_slot);
-  state.activation.slots.from_host(slots);
-  state.particles.all().active.from_host(active);
-  state.all_active = false;
-}
-
 inline double mass(const Vec4& p) { return 1000.0 * std::pow(static_cast<double>(p.w) / 2, 3); }
 
 /// A cube of side^3 particles of spacing d, with its low corner at 0.

@@ -9,11 +9,10 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// A ball of several levels with random velocities and temperatures, before and after one effect that acts up
-/// to the level `coarsest`. With `resting`, one in three particles is not solved.
+/// to the level `coarsest`.
 struct Crowd {
   EffectKind kind;
   int coarsest;
-  bool resting = false;
   int levels = 4;      ///< number of levels in the ball
   bool walled = true;  ///< adds a warm wall beside it
   bool whole = true;   ///< includes the particles that are too coarse for the effect
@@ -25,7 +24,7 @@ struct Crowd {
   void run() {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> any(-1, 1);
-    std::vector<std::uint8_t> levels_column, active;
+    std::vector<std::uint8_t> levels_column;
     int number = 0;
     for (const Vec4& at : mixed_ball()) {
       const int own = number++ % levels;
@@ -37,7 +36,6 @@ struct Crowd {
       warmth_before.push_back(warmth);
       level.push_back(own);
       levels_column.push_back(static_cast<std::uint8_t>(own));
-      active.push_back(number % 3 != 0);
     }
     auto state = state_of(points, false);
     state.finest_support = 0.25f;
@@ -51,7 +49,6 @@ struct Crowd {
     p.temperature.from_host(warmth_before);
     set(state.parameters.effects);
     constrain_density(state, DensityView(state.particles));
-    if (resting) let_rest(state, active);
     if (kind == EffectKind::Adhesion) passes_of(EffectKind::Cohesion).front().run(state);
     for (const Stage& stage : passes_of(kind)) stage.run(state);
     after = p.velocity.to_host();
@@ -83,20 +80,18 @@ constexpr EffectKind kinds[] = {EffectKind::Viscosity, EffectKind::Cohesion,  Ef
 SIM_TEST(OwnLevels, CoarserWaterIsNotTouchedAndOtherWaterIs) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : kinds) {
-    for (const bool resting : {false, true}) {
-      for (int coarsest = 0; coarsest < 4; ++coarsest) {
-        SCOPED_TRACE(std::string(traits_of(kind).word) + " to level " + std::to_string(coarsest));
-        Crowd crowd{.kind = kind, .coarsest = coarsest, .resting = resting};
-        crowd.run();
-        std::array<int, 4> changed{};
-        for (std::size_t i = 0; i < crowd.points.size(); ++i)
-          changed[static_cast<std::size_t>(crowd.level[i])] += crowd.changed(i);
-        for (int level = 0; level < 4; ++level) {
-          if (level > coarsest) {
-            EXPECT_EQ(changed[static_cast<std::size_t>(level)], 0) << level;
-          } else {
-            EXPECT_GT(changed[static_cast<std::size_t>(level)], 0) << level;
-          }
+    for (int coarsest = 0; coarsest < 4; ++coarsest) {
+      SCOPED_TRACE(std::string(traits_of(kind).word) + " to level " + std::to_string(coarsest));
+      Crowd crowd{.kind = kind, .coarsest = coarsest};
+      crowd.run();
+      std::array<int, 4> changed{};
+      for (std::size_t i = 0; i < crowd.points.size(); ++i)
+        changed[static_cast<std::size_t>(crowd.level[i])] += crowd.changed(i);
+      for (int level = 0; level < 4; ++level) {
+        if (level > coarsest) {
+          EXPECT_EQ(changed[static_cast<std::size_t>(level)], 0) << level;
+        } else {
+          EXPECT_GT(changed[static_cast<std::size_t>(level)], 0) << level;
         }
       }
     }
@@ -106,15 +101,13 @@ SIM_TEST(OwnLevels, CoarserWaterIsNotTouchedAndOtherWaterIs) {
 SIM_TEST(OwnLevels, WaterThatIsFineThroughoutHasTheSameBits) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : kinds) {
-    for (const bool resting : {false, true}) {
-      Crowd all{.kind = kind, .coarsest = 3, .resting = resting, .levels = 2}, own = all;
-      own.coarsest = 1;
-      all.run();
-      own.run();
-      EXPECT_EQ(std::memcmp(all.after.data(), own.after.data(), all.after.size() * sizeof(Vec4)), 0)
-          << traits_of(kind).word;
-      EXPECT_EQ(all.warmth_after, own.warmth_after) << traits_of(kind).word;
-    }
+    Crowd all{.kind = kind, .coarsest = 3, .levels = 2}, own = all;
+    own.coarsest = 1;
+    all.run();
+    own.run();
+    EXPECT_EQ(std::memcmp(all.after.data(), own.after.data(), all.after.size() * sizeof(Vec4)), 0)
+        << traits_of(kind).word;
+    EXPECT_EQ(all.warmth_after, own.warmth_after) << traits_of(kind).word;
   }
 }
 
@@ -122,27 +115,25 @@ SIM_TEST(OwnLevels, WaterThatIsFineThroughoutHasTheSameBits) {
 SIM_TEST(OwnLevels, MomentumAndHeatStayAtEveryLevel) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : {EffectKind::Viscosity, EffectKind::Cohesion, EffectKind::Heat}) {
-    for (const bool resting : {false, true}) {
-      for (int coarsest = 0; coarsest < 4; ++coarsest) {
-        SCOPED_TRACE(std::string(traits_of(kind).word) + " to level " + std::to_string(coarsest));
-        Crowd crowd{.kind = kind, .coarsest = coarsest, .resting = resting, .walled = false};
-        crowd.run();
-        double gain[4] = {}, exchanged[4] = {};
-        for (std::size_t i = 0; i < crowd.points.size(); ++i) {
-          const double m = mass(crowd.points[i]);
-          const Vec3 dv = xyz(crowd.after[i]) - xyz(crowd.before[i]);
-          const float warmer = crowd.warmth_after[i] - crowd.warmth_before[i];
-          const float each[4] = {dv.x, dv.y, dv.z, warmer};
-          for (int k = 0; k < 4; ++k) {
-            gain[k] += m * static_cast<double>(each[k]);
-            exchanged[k] += m * std::abs(static_cast<double>(each[k]));
-          }
+    for (int coarsest = 0; coarsest < 4; ++coarsest) {
+      SCOPED_TRACE(std::string(traits_of(kind).word) + " to level " + std::to_string(coarsest));
+      Crowd crowd{.kind = kind, .coarsest = coarsest, .walled = false};
+      crowd.run();
+      double gain[4] = {}, exchanged[4] = {};
+      for (std::size_t i = 0; i < crowd.points.size(); ++i) {
+        const double m = mass(crowd.points[i]);
+        const Vec3 dv = xyz(crowd.after[i]) - xyz(crowd.before[i]);
+        const float warmer = crowd.warmth_after[i] - crowd.warmth_before[i];
+        const float each[4] = {dv.x, dv.y, dv.z, warmer};
+        for (int k = 0; k < 4; ++k) {
+          gain[k] += m * static_cast<double>(each[k]);
+          exchanged[k] += m * std::abs(static_cast<double>(each[k]));
         }
-        const bool heat = kind == EffectKind::Heat;
-        for (int k = heat ? 3 : 0; k < (heat ? 4 : 3); ++k) {
-          ASSERT_GT(exchanged[k], 0) << "something must move for the test to mean anything";
-          EXPECT_LT(std::abs(gain[k]), 3e-6 * exchanged[k]) << k;
-        }
+      }
+      const bool heat = kind == EffectKind::Heat;
+      for (int k = heat ? 3 : 0; k < (heat ? 4 : 3); ++k) {
+        ASSERT_GT(exchanged[k], 0) << "something must move for the test to mean anything";
+        EXPECT_LT(std::abs(gain[k]), 3e-6 * exchanged[k]) << k;
       }
     }
   }
@@ -152,21 +143,19 @@ SIM_TEST(OwnLevels, MomentumAndHeatStayAtEveryLevel) {
 SIM_TEST(OwnLevels, CoarserWaterHoldsNothingBack) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : {EffectKind::Viscosity, EffectKind::Heat}) {
-    for (const bool resting : {false, true}) {
-      SCOPED_TRACE(std::string(traits_of(kind).word) + (resting ? ", some rest" : ""));
-      Crowd among{.kind = kind, .coarsest = 1, .resting = resting}, alone = among;
-      alone.whole = false;
-      among.run();
-      alone.run();
-      std::size_t k = 0;
-      for (std::size_t i = 0; i < among.points.size(); ++i) {
-        if (among.level[i] > 1) continue;
-        EXPECT_LT(length(xyz(among.after[i]) - xyz(alone.after[k])), 1e-5f) << i;
-        EXPECT_NEAR(among.warmth_after[i], alone.warmth_after[k], 1e-5f) << i;
-        ++k;
-      }
-      EXPECT_EQ(k, alone.points.size());
+    SCOPED_TRACE(std::string(traits_of(kind).word));
+    Crowd among{.kind = kind, .coarsest = 1}, alone = among;
+    alone.whole = false;
+    among.run();
+    alone.run();
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < among.points.size(); ++i) {
+      if (among.level[i] > 1) continue;
+      EXPECT_LT(length(xyz(among.after[i]) - xyz(alone.after[k])), 1e-5f) << i;
+      EXPECT_NEAR(among.warmth_after[i], alone.warmth_after[k], 1e-5f) << i;
+      ++k;
     }
+    EXPECT_EQ(k, alone.points.size());
   }
 }
 

@@ -23,34 +23,6 @@ SIM_TEST(Cohesion, KeepsMomentumForMixedMasses) {
   for (const double p : momentum) EXPECT_LT(std::abs(p), 1e-6 * exchanged);
 }
 
-SIM_TEST(Cohesion, KeepsMomentumWhereSomeRest) {
-  NEEDS_EFFECTS;
-  const auto points = mixed_ball();
-  auto state = state_of(points, false);
-  state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
-  // The last particles rest, so that slots equal particle indices.
-  const std::size_t solved = points.size() - 40;
-  std::vector<std::uint8_t> active(points.size(), 0);
-  std::fill_n(active.begin(), solved, std::uint8_t{1});
-  state.particles.all().active.from_host(active);
-  state.all_active = false;
-  state.activation.list_active(ActiveListView(state.particles));
-  const auto v = velocities_by(EffectKind::Cohesion, state);
-  double momentum[3] = {}, exchanged = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const double m = mass(points[i]);
-    momentum[0] += m * static_cast<double>(v[i].x);
-    momentum[1] += m * static_cast<double>(v[i].y);
-    momentum[2] += m * static_cast<double>(v[i].z);
-    exchanged += m * static_cast<double>(length(xyz(v[i])));
-    if (i >= solved) {
-      EXPECT_EQ(length(xyz(v[i])), 0) << i;
-    }
-  }
-  ASSERT_GT(exchanged, 1.0);
-  for (const double p : momentum) EXPECT_LT(std::abs(p), 1e-6 * exchanged);
-}
-
 SIM_TEST(Cohesion, PullsAtASurfaceAndNowhereElse) {
   NEEDS_EFFECTS;
   constexpr int side = 9;

@@ -132,7 +132,6 @@ SIM_TEST(Exchange, NothingIsKnownOfWhatItPours) {
   auto& p = state.particles.all();
   p.saliency.from_host(std::vector<float>(8, 0.7f));
   p.unrest.from_host(std::vector<float>(8, 0.4f));
-  p.rest.from_host(std::vector<std::uint8_t>(8, rest_nowhere));
   Array<int> lowest;
   lowest.from_host({5, 2, 0});
   std::int64_t reservoir = 0;
@@ -141,8 +140,6 @@ SIM_TEST(Exchange, NothingIsKnownOfWhatItPours) {
   using testing::ElementsAre;
   EXPECT_THAT(p.saliency.to_host(), ElementsAre(0.7f, 0.7f, 0.7f, 0.7f, 0.7f, 0, 0, 0));
   EXPECT_THAT(p.unrest.to_host(), ElementsAre(0.4f, 0.4f, 0.4f, 0.4f, 0.4f, 0, 0, 0));
-  const std::uint8_t was = rest_nowhere;
-  EXPECT_THAT(p.rest.to_host(), ElementsAre(was, was, was, was, was, 0, 0, 0));
 }
 
 SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {

@@ -13,7 +13,6 @@ namespace sim::SIM_BACKEND {
 /// pair conducts only if both particles take part.
 struct Conduction {
   static constexpr int sums = 1;
-  static constexpr bool of_all = true;
   const float* temperature;
   float* next;
   float spread;  ///< 12 D dt, m2: F = 6 poly6 (h^2 - r^2)^2

@@ -11,7 +11,6 @@ namespace sim::SIM_BACKEND {
 /// coarser than the effect's coarsest level get no curl, but count as neighbours.
 struct Curl {
   static constexpr int sums = 4;
-  static constexpr bool of_all = false;
   /// Minimum s_i used as divisor, so that spray gets almost no curl.
   static constexpr float least_whole = 0.3f;
   /// Value of w for particles without a curl.

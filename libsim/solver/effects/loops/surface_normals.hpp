@@ -10,7 +10,6 @@ namespace sim::SIM_BACKEND {
 template <class Boundary>
 struct SurfaceNormals {
   static constexpr int sums = 3;
-  static constexpr bool of_all = false;
   Boundary walls;
   Vec4* normal;
   float widest;  ///< largest support of particles on which the effect acts, m
