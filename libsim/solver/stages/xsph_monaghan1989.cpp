@@ -92,7 +92,7 @@ struct Xsph {
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
     }
-    const float viscous = at_most(me.spread * thicker * reciprocal(kernel.h2), most_share);
+    const float viscous = at_most(thicker * me.spread * reciprocal(kernel.h2), most_share);
     const float calmed = at_most(me.still, v.w);
     const float flow = (viscous + calmed * (1 - viscous)) * weight;
     vx += flow * (v.x - me.velocity.x);
