@@ -11,7 +11,7 @@ uniform int thread_limit;
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
   if (i >= particle_count || (touched[i] & may_be_in_front) == 0u) return;
-  const Sphere s = sphere_of(particles[i]);
+  const Sphere s = sphere_of(i);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;
   if (max(extent.x, extent.y) > thread_limit) return;

@@ -3,6 +3,9 @@
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 uniform uint particle_count;
 
+#ifdef ELLIPSOIDS
+#include "ellipsoid.glsl"
+#else
 // A sphere with copies of the view's data that its samples need, so that a loop over pixels does not load them again.
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
@@ -15,7 +18,8 @@ struct Sphere {
   uint nearest;  // bits of a lower bound of the sphere's depth
 };
 
-Sphere sphere_of(vec4 particle) {
+Sphere sphere_of(uint i) {
+  const vec4 particle = particles[i];
   precise vec3 eye = world_to_eye[0].xyz * particle.x + world_to_eye[1].xyz * particle.y +
                      world_to_eye[2].xyz * particle.z + world_to_eye[3].xyz;
   precise float radius = particle.w * origin.w;
@@ -29,20 +33,10 @@ Sphere sphere_of(vec4 particle) {
                 nearest);
 }
 
-bool beyond_walls(vec4 particle) {
-  const vec3 at = particle.xyz;
-  const float radius = particle.w * origin.w;
-  return tank.w > 0.0 && (any(lessThan(at, vec3(-radius))) || any(greaterThan(at, tank_high() + radius)));
-}
-
-bool crosses_near(Sphere s) { return s.centre.z - s.radius < origin.z; }
-
-// Radius in cells of a grid, at the centre's depth. Below sqrt(1/2) a disc may miss every cell centre.
-float radius_in_cells(Sphere s, vec4 grid) {
-  precise float cells = s.radius / (s.centre.z * max(grid.x, grid.z));
-  return cells;
-}
-bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
+// Half the extent along each axis of the eye, m.
+vec3 half_extent(Sphere s) { return vec3(s.radius); }
+// Smaller half extent across the line of sight, m.
+float narrow_extent(Sphere s) { return s.radius; }
 
 // Depths at which a ray enters and leaves the whole sphere; false if it misses. The ray is assumed to pass through
 // the centre of a subpixel sphere.
@@ -61,6 +55,41 @@ bool meets_whole(Sphere s, vec2 slope, bool subpixel, out float entry, out float
   return square > 0.0 && leave > s.near;
 }
 
+vec2 tangent_slopes(float x, float z, float radius) {
+  const float root = radius * sqrt(x * x + z * z - radius * radius);
+  return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
+}
+// Bounds of the slopes, along one axis, of a sphere that does not cross the near plane.
+vec2 slopes_x(Sphere s) { return tangent_slopes(s.centre.x, s.centre.z, s.radius); }
+vec2 slopes_y(Sphere s) { return tangent_slopes(s.centre.y, s.centre.z, s.radius); }
+
+// Length of the ray inside the whole sphere, m.
+float whole_chord(Sphere s, vec2 slope) {
+  // Squared distance of the centre from the ray, by the cross product.
+  precise float x = s.centre.y - s.centre.z * slope.y;
+  precise float y = s.centre.z * slope.x - s.centre.x;
+  precise float z = s.centre.x * slope.y - s.centre.y * slope.x;
+  precise float off = (x * x + y * y + z * z) / (slope.x * slope.x + slope.y * slope.y + 1.0);
+  precise float chord = 2.0 * sqrt(max(s.radius * s.radius - off, 0.0));
+  return chord;
+}
+#endif
+
+bool beyond_walls(vec4 particle) {
+  const vec3 at = particle.xyz;
+  const float radius = particle.w * origin.w;
+  return tank.w > 0.0 && (any(lessThan(at, vec3(-radius))) || any(greaterThan(at, tank_high() + radius)));
+}
+
+bool crosses_near(Sphere s) { return s.centre.z - half_extent(s).z < origin.z; }
+
+// Radius in cells of a grid, at the centre's depth. Below sqrt(1/2) a disc may miss every cell centre.
+float radius_in_cells(Sphere s, vec4 grid) {
+  precise float cells = narrow_extent(s) / (s.centre.z * max(grid.x, grid.z));
+  return cells;
+}
+bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
+
 // Clips the ray's section in the sphere to the inside of the walls; false if nothing is left.
 bool between_walls(Sphere s, vec2 slope, inout float entry, inout float leave) {
   precise vec3 ray = world_ray(slope, s.to_world);
@@ -72,20 +101,15 @@ bool between_walls(Sphere s, vec2 slope, inout float entry, inout float leave) {
   return leave > entry;
 }
 
-vec2 tangent_slopes(float x, float z, float radius) {
-  const float root = radius * sqrt(x * x + z * z - radius * radius);
-  return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
-}
-
 // Bounds of the slopes, along one axis, of the visible part of a sphere: the part beyond the near plane.
-vec2 clipped_slopes(float x, float z, float radius) {
-  const float low = x - radius, high = x + radius;
-  return vec2(low / (low < 0 ? origin.z : z + radius), high / (high > 0 ? origin.z : z + radius));
+vec2 clipped_slopes(float x, float z, float reach_x, float reach_z) {
+  const float low = x - reach_x, high = x + reach_x;
+  return vec2(low / (low < 0 ? origin.z : z + reach_z), high / (high > 0 ? origin.z : z + reach_z));
 }
 
 // Cells whose centres the sphere may cover: lower corner, upper corner (exclusive). Empty: upper <= lower.
 ivec4 footprint(Sphere s, vec4 grid, ivec2 cells) {
-  if (s.centre.z + s.radius <= origin.z) return ivec4(0);
+  if (s.centre.z + half_extent(s).z <= origin.z) return ivec4(0);
   const vec2 limit = vec2(cells);
   if (is_subpixel(s, grid)) {
     const vec2 cell = floor((s.centre.xy / s.centre.z - grid.yw) / grid.xz);
@@ -93,10 +117,9 @@ ivec4 footprint(Sphere s, vec4 grid, ivec2 cells) {
     return ivec4(cell, cell + 1.0);
   }
   const bool crossing = crosses_near(s);
-  const vec2 x = crossing ? clipped_slopes(s.centre.x, s.centre.z, s.radius)
-                          : tangent_slopes(s.centre.x, s.centre.z, s.radius);
-  const vec2 y = crossing ? clipped_slopes(s.centre.y, s.centre.z, s.radius)
-                          : tangent_slopes(s.centre.y, s.centre.z, s.radius);
+  const vec3 extent = half_extent(s);
+  const vec2 x = crossing ? clipped_slopes(s.centre.x, s.centre.z, extent.x, extent.z) : slopes_x(s);
+  const vec2 y = crossing ? clipped_slopes(s.centre.y, s.centre.z, extent.y, extent.z) : slopes_y(s);
   // The tolerance of 0.01 cells covers rounding; meets_whole() decides for each cell.
   const vec2 low = ceil((vec2(x.x, y.x) - grid.yw) / grid.xz - 0.51);
   const vec2 high = floor((vec2(x.y, y.y) - grid.yw) / grid.xz - 0.49) + 1.0;
@@ -122,12 +145,7 @@ uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per
     if (!meets_whole(s, slope, false, entry, leave)) return 0u;
     chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
   } else {
-    // Squared distance of the centre from the ray, by the cross product.
-    precise float x = s.centre.y - s.centre.z * slope.y;
-    precise float y = s.centre.z * slope.x - s.centre.x;
-    precise float z = s.centre.x * slope.y - s.centre.y * slope.x;
-    precise float off = (x * x + y * y + z * z) / (slope.x * slope.x + slope.y * slope.y + 1.0);
-    chord = 2.0 * sqrt(max(s.radius * s.radius - off, 0.0));
+    chord = whole_chord(s, slope);
   }
   return uint(min(chord * units_per_m + 0.5, 4294967040.0));
 }

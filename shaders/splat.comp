@@ -64,7 +64,7 @@ bool goes_first(Sphere s) {
 bool take_turn(uint i) {
   if (second_round == 1) return (touched[i] & in_first_round) == 0u;
   const vec4 particle = particles[i];
-  const bool first = !is_usable(particle) || goes_first(sphere_of(particle));
+  const bool first = !is_usable(particle) || goes_first(sphere_of(i));
   touched[i] = first ? in_first_round : 0u;
   return first;
 }
@@ -81,7 +81,7 @@ void main() {
     atomicAdd(beyond, 1u);
     return;
   }
-  const Sphere s = sphere_of(particle);
+  const Sphere s = sphere_of(i);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;
   if (extent.x <= 0 || extent.y <= 0) {

@@ -64,7 +64,7 @@ void splat(uint i, ivec2 first, ivec2 step) {
 #ifdef FRONT
   if (!in_depth) return;
 #endif
-  const Sphere s = sphere_of(particles[i]);
+  const Sphere s = sphere_of(i);
   if (in_depth) splat_pixels(s, i, first, step);
 #ifndef FRONT
   splat_cells(s, first, step);

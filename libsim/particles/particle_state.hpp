@@ -1,12 +1,21 @@
 #pragma once
 /// Particle data for programs, on the host.
 
+#include <cstdint>
+
 namespace sim {
 
 /// A particle for the renderer and the bake.
 struct RenderParticle {
   float x_m = 0, y_m = 0, z_m = 0;
   float radius_m = 0;
+};
+
+/// The ellipsoid by which the renderer draws a particle: the points x with (x - c)^T S^-1 (x - c) <= 1, with
+/// c the RenderParticle's place. S / scale as signed 16-bit fractions, the first in the low half: word 0: xx,
+/// yy; 1: zz, xy; 2: xz, yz. Word 3: the scale as a float, m2.
+struct RenderShape {
+  std::uint32_t word[4];
 };
 
 /// A complete particle, for tests, checkpoints and comparisons.

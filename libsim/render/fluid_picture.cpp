@@ -3,17 +3,30 @@
 namespace sim {
 
 void FluidPicture::take(Simulation& fluid) {
-  buffer_.reserve(fluid.particle_capacity());
-  uploaded_ = !fluid.copy_to_gl(buffer_.gl());
+  uploaded_ = surface_ == Surface::Ellipsoids ? !take_surface(fluid) : !take_particles(fluid);
   if (uploaded_) {
-    fluid.read_particles(particles_);
-    buffer_.upload(particles_);
+    buffer_.upload(particles_, shapes_);
   } else {
     buffer_.set_count(fluid.particle_count());
   }
   take_foam(fluid);
   taken_frame_ = fluid.frame();
   renderer_.place_obstacles(fluid.read_obstacles());
+}
+
+bool FluidPicture::take_particles(Simulation& fluid) {
+  buffer_.reserve(fluid.particle_capacity());
+  if (fluid.copy_to_gl(buffer_.gl())) return true;
+  fluid.read_particles(particles_);
+  shapes_.clear();
+  return false;
+}
+
+bool FluidPicture::take_surface(Simulation& fluid) {
+  buffer_.reserve_with_shapes(fluid.particle_capacity());
+  if (fluid.copy_surface_to_gl(buffer_.gl(), buffer_.shapes())) return true;
+  fluid.read_surface(particles_, shapes_);
+  return false;
 }
 
 void FluidPicture::take_foam(Simulation& fluid) {

@@ -16,7 +16,8 @@ namespace sim {
 /// Needs a current GL context at every call and when it is destroyed.
 class FluidPicture {
  public:
-  explicit FluidPicture(const Scene& scene, const RenderOptions& options = {}) : renderer_(scene, options) {}
+  explicit FluidPicture(const Scene& scene, const RenderOptions& options = {})
+      : renderer_(scene, options), surface_(options.surface) {}
 
   /// Forgets the last picture before a new run. `seen`, if not null, is the picture that the viewer saw last.
   /// `seen` must live until the first draw; if the method uses no pictures, until the next begin().
@@ -43,15 +44,20 @@ class FluidPicture {
   bool uploaded() const { return uploaded_; }
 
  private:
+  // Both return true if the device wrote the buffer, or else read particles and shapes to the host.
+  bool take_particles(Simulation& fluid);
+  bool take_surface(Simulation& fluid);
   void take_foam(Simulation& fluid);
 
   FluidRenderer renderer_;
+  Surface surface_;
   ParticleBuffer buffer_, foam_;
   GBuffer seen_;
   const GBuffer* before_ = nullptr;
   int taken_frame_ = 0;             ///< simulation frame of the last take()
   std::optional<int> drawn_frame_;  ///< simulation frame of the last picture; none before the first draw
   std::vector<RenderParticle> particles_;
+  std::vector<RenderShape> shapes_;
   bool uploaded_ = false;
 };
 

@@ -10,20 +10,43 @@
 
 namespace sim {
 
-static_assert(sizeof(RenderParticle) == 16, "the shaders read a particle as one vec4");
+static_assert(sizeof(RenderParticle) == 16 && sizeof(RenderShape) == 16,
+              "the shaders read a particle as one vec4 and a shape as one uvec4");
 
-void ParticleBuffer::upload(std::span<const RenderParticle> particles) {
+const char* surface_name(Surface surface) { return surface == Surface::Spheres ? "spheres" : "ellipsoids"; }
+
+Surface parse_surface(const std::string& word) {
+  for (const Surface surface : {Surface::Ellipsoids, Surface::Spheres})
+    if (word == surface_name(surface)) return surface;
+  throw base::Error("surface '" + word + "'", "is unknown", "use ellipsoids or spheres");
+}
+
+void ParticleBuffer::upload(std::span<const RenderParticle> particles, std::span<const RenderShape> shapes) {
   const auto count = static_cast<std::int64_t>(particles.size());
-  reserve(count);
+  if (!shapes.empty() && shapes.size() != particles.size()) {
+    throw base::Error(
+        "particle buffer",
+        "got " + std::to_string(shapes.size()) + " shapes for " + std::to_string(count) + " particles",
+        "give one shape per particle, or none");
+  }
+  shapes.empty() ? reserve(count) : reserve_with_shapes(count);
   if (count > 0) buffer_.write(particles.data(), static_cast<std::int64_t>(particles.size_bytes()));
+  if (!shapes.empty()) shapes_.write(shapes.data(), static_cast<std::int64_t>(shapes.size_bytes()));
   count_ = count;
 }
 
 void ParticleBuffer::reserve(std::int64_t capacity) {
+  with_shapes_ = false;
   if (gl_name() && capacity <= capacity_) return;
   capacity_ = capacity < 1 ? 1 : capacity;
   count_ = 0;
   buffer_.reserve(capacity_ * 16);
+}
+
+void ParticleBuffer::reserve_with_shapes(std::int64_t capacity) {
+  reserve(capacity);
+  shapes_.reserve(capacity_ * 16);
+  with_shapes_ = true;
 }
 
 void ParticleBuffer::set_count(std::int64_t count) {

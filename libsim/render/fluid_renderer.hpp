@@ -18,33 +18,52 @@
 
 namespace sim {
 
-/// Particles as the renderer's input: a GL shader storage buffer of RenderParticle (x, y, z, radius in m).
-/// Needs a current context at every call and when it is destroyed.
+/// Particles as the renderer's input: a GL shader storage buffer of RenderParticle (x, y, z, radius in m),
+/// and optionally one of RenderShape: without shapes they are spheres. Needs a current context at every call
+/// and when it is destroyed.
 class ParticleBuffer {
  public:
-  /// Replaces the contents; grows the buffer if needed.
-  void upload(std::span<const RenderParticle> particles);
+  /// Replaces the contents; grows the buffers if needed. `shapes`: one per particle, or none.
+  void upload(std::span<const RenderParticle> particles, std::span<const RenderShape> shapes = {});
 
   /// Allocates `capacity` particles for a writer on the device (CUDA interop), which may then register gl().
   /// gl() stays the same until reserve() or upload() needs more than capacity(). If the buffer grows, its
   /// contents are lost.
   void reserve(std::int64_t capacity);
+  /// The same, for particles with shapes.
+  void reserve_with_shapes(std::int64_t capacity);
   /// Sets the number of particles that a writer on the device has stored, at most capacity() (base::Error).
   void set_count(std::int64_t count);
 
   unsigned gl_name() const { return buffer_.name(); }  ///< 0 before the first reserve or upload
   GlBufferRef gl() const { return buffer_.ref(); }
+  unsigned shapes_name() const { return with_shapes_ ? shapes_.name() : 0; }  ///< 0 without shapes
+  GlBufferRef shapes() const { return shapes_.ref(); }
   std::int64_t count() const { return count_; }
   std::int64_t capacity() const { return capacity_; }
 
  private:
-  GlBuffer buffer_;
+  GlBuffer buffer_, shapes_;
+  bool with_shapes_ = false;
   std::int64_t count_ = 0;
   std::int64_t capacity_ = 0;
 };
 
+/// How particles with known neighbours are drawn.
+enum class Surface {
+  Ellipsoids,  ///< flattened along the water's surface and stretched along threads (Yu and Turk 2013)
+  Spheres
+};
+/// "ellipsoids" or "spheres".
+const char* surface_name(Surface surface);
+/// base::Error for another word.
+Surface parse_surface(const std::string& word);
+
 /// Options of the renderer. Numbers whose names end in _r are in units of the particle's own radius r.
 struct RenderOptions {
+  /// Spheres: FluidPicture takes no shapes from the simulation. FluidRenderer::draw always follows its
+  /// buffer.
+  Surface surface = Surface::Ellipsoids;
   /// Splatted radius / particle radius. Touching spheres (1) show the next layer through the gaps between
   /// them.
   float radius_scale = 1.5F;

@@ -104,6 +104,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
   // On llvmpipe one invocation draws footprints of up to 64 px, on a GPU of up to 16 px: llvmpipe runs
   // invocations as SIMD lanes, so that a team of invocations for a small footprint is slower there.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
+  splats_of(options.surface == Surface::Ellipsoids);
   counters.reserve(sizeof(RenderCounts));
   counters.fill(0);
   no_particles.reserve(16);
@@ -181,9 +182,21 @@ void FluidRenderer::State::clear() {
   timer.mark("clear");
 }
 
+const FluidRenderer::State::Splats& FluidRenderer::State::splats_of(bool with_shapes) {
+  std::optional<Splats>& out = splats[with_shapes];
+  if (!out) {
+    const std::string shape = with_shapes ? "#define ELLIPSOIDS\n" : "";
+    out.emplace(compute_program("splat.comp", shape.c_str()),
+                compute_program("splat_wide.comp", shape.c_str()),
+                compute_program("front.comp", shape.c_str()),
+                compute_program("splat_wide.comp", (shape + "#define FRONT\n").c_str()));
+  }
+  return *out;
+}
+
 void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
   bind_storage({particles_, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(),
-                t.wide_list.name(), t.touched.name(), t.blocks.name()});
+                t.wide_list.name(), t.touched.name(), t.blocks.name(), shapes_});
 }
 
 /// Runs a program on the particles with large footprints that the last of the two rounds of splatting
@@ -211,6 +224,8 @@ void FluidRenderer::State::dispatch_wide(const GlProgram& program, int all_items
 }
 
 void FluidRenderer::State::splat_round(int second_round) {
+  const Splats& programs = splats_of(shapes_ != 0);
+  const GlProgram& splat = programs.small;
   splat.use();
   glUniform1ui(splat.uniform("particle_count"), static_cast<GLuint>(count_));
   glUniform1i(splat.uniform("thread_limit"), options.thread_px);
@@ -223,7 +238,7 @@ void FluidRenderer::State::splat_round(int second_round) {
     dispatch_particles(count_);
   });
   timer.mark("splat small");
-  dispatch_wide(splat_wide, 0);
+  dispatch_wide(programs.wide, 0);
   timer.mark("splat wide");
 }
 
@@ -240,6 +255,8 @@ void FluidRenderer::State::splat_particles() {
 }
 
 void FluidRenderer::State::find_front() {
+  const Splats& programs = splats_of(shapes_ != 0);
+  const GlProgram& front = programs.front;
   front.use();
   glUniform1ui(front.uniform("particle_count"), static_cast<GLuint>(count_));
   glUniform1i(front.uniform("thread_limit"), options.thread_px);
@@ -247,7 +264,7 @@ void FluidRenderer::State::find_front() {
     bind_splat(t);
     dispatch_particles(count_);
   });
-  dispatch_wide(front_wide, 1);
+  dispatch_wide(programs.front_wide, 1);
   timer.mark("front");
 }
 
@@ -350,6 +367,7 @@ void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuff
 void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<const View> views,
                                       unsigned framebuffer, const ParticleBuffer* foam_from) {
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
+  shapes_ = from.shapes_name();
   count_ = from.count();
   views_drawn = views.size();
   // Shaders of the last draw wrote to the buffers of `targets`. The barrier orders their writes before

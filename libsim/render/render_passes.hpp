@@ -6,6 +6,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <optional>
 #include <span>
 
 #include "libsim/gl/gl_program.hpp"
@@ -40,13 +41,14 @@ struct FluidRenderer::State {
   PassTimer timer;
   bool foam;  // the scene lists foam: draws one more pass, and compiles foam into the composite
   GlProgram clear_targets = compute_program("clear.comp");
-  GlProgram splat = compute_program("splat.comp");
+  /// The programs that draw particles of one shape.
+  struct Splats {
+    GlProgram small, wide, front, front_wide;
+  };
+  std::array<std::optional<Splats>, 2> splats;  ///< spheres and ellipsoids; compiled when they are needed
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
   GlProgram block_depth = compute_program("block_depth.comp");
-  GlProgram splat_wide = compute_program("splat_wide.comp");
   GlProgram wet_tiles = compute_program("wet_tiles.comp");
-  GlProgram front = compute_program("front.comp");
-  GlProgram front_wide = compute_program("splat_wide.comp", "#define FRONT\n");
   GlProgram filter_depth = compute_program("filter_depth.comp");
   GlProgram clean_depth = compute_program("clean_depth.comp");
   GlProgram normals = compute_program("normals.comp");
@@ -80,6 +82,8 @@ struct FluidRenderer::State {
   /// barrier. The device may process both views at once.
   template <class Dispatch>
   void each_view(Dispatch dispatch, unsigned more_barriers = 0);
+  /// The programs for the particles of the present draw, with or without shapes.
+  const Splats& splats_of(bool with_shapes);
   void bind_splat(const ViewTargets& t) const;
   void write_block(ViewTargets& t) const;
   void clear();
@@ -96,6 +100,7 @@ struct FluidRenderer::State {
   void shade(std::span<const View> views, unsigned framebuffer);
 
   GLuint particles_ = 0;  // GL buffer of the particles of the present draw
+  GLuint shapes_ = 0;     // GL buffer of their ellipsoids; 0: spheres
   std::int64_t count_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "libsim/solver/kept_state.hpp"
 #include "libsim/solver/readout.hpp"
 #include "libsim/solver/state_file.hpp"
+#include "libsim/surface/ellipsoids.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -270,6 +271,24 @@ class FluidSimulation final : public Simulation {
     return shared;
   }
 
+  void read_surface(std::vector<RenderParticle>& out, std::vector<RenderShape>& shapes) override {
+    surface_.read(surface_particles_of(state_, scene_.lid), out, shapes);
+  }
+
+  bool copy_surface_to_gl(const GlBufferRef& particles, const GlBufferRef& shapes) override {
+    const std::size_t needed = static_cast<std::size_t>(state_.particles.size()) * sizeof(Vec4);
+    const bool shared =
+        particles.bytes >= needed && shapes.bytes >= needed && gl_.accept({particles, shapes});
+    if (shared) {
+      const auto& memory = gl_.map();
+      surface_.compute(surface_particles_of(state_, scene_.lid), static_cast<Vec4*>(memory[0]),
+                       static_cast<RenderShape*>(memory[1]));
+    }
+    gl_.unmap();
+    state_.saliency.input.give_back();
+    return shared;
+  }
+
   std::string explain() const override {
     const auto& k = state_.parameters;
     return "method " + method_name(options_.method) + " on " + backend_name(options_.backend) + ": " +
@@ -375,6 +394,7 @@ class FluidSimulation final : public Simulation {
   RelaxedStart relaxed_;
   double fall_speed_ = 0;  ///< fall_speed() of the start, m/s
   FluidState state_;
+  Ellipsoids surface_;  ///< for pictures only
   Schedule schedule_;
   SubstepRule substeps_;
   SubstepCount substeps_taken_;

@@ -137,6 +137,18 @@ void pack_for_drawing(const Particles& particles, Vec4* out) {
   for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
 }
 
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid) {
+  const auto& p = state.particles.all();
+  return {.n = state.particles.size(),
+          .position = p.position.data(),
+          .velocity = p.velocity.data(),
+          .frame_s = static_cast<float>(state.parameters.frame_s()),
+          .support = state.one_level ? state.lightest_support : state.supports.h[1],
+          .mixed = !state.one_level,
+          .tank = state.domain,
+          .lid = lid};
+}
+
 FoamReport report_of(const FoamPool& pool) {
   FoamReport out;
   if (pool.capacity() == 0) return out;

@@ -6,6 +6,7 @@
 
 #include "libsim/simulation.hpp"
 #include "libsim/solver/stages/fluid_state.hpp"
+#include "libsim/surface/ellipsoids.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -34,6 +35,9 @@ std::vector<ParticleState> states_of(const Particles& particles);
 void render_particles_of(const Particles& particles, std::vector<RenderParticle>& out);
 /// Writes position and radius of each particle to `out`, in the back end's memory.
 void pack_for_drawing(const Particles& particles, Vec4* out);
+
+/// The particles as input of their ellipsoids.
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid);
 
 /// Counts of foam particles; all zero without foam.
 FoamReport report_of(const FoamPool& pool);

@@ -150,6 +150,7 @@ const Rooms rooms{
     {"libsim/foam", 3},
     {"libsim/levels", 3},
     {"libsim/saliency", 3},
+    {"libsim/surface", 3},
     {"libsim", 4},
     {"libsim/solver/stages", 4},
     {"libsim/bake", 5},

@@ -1,0 +1,151 @@
+#include "libsim/surface/ellipsoids.hpp"
+
+namespace sim::SIM_BACKEND {
+
+namespace {
+
+struct CopyForSurface {
+  const Vec4* from;
+  Vec4* predicted;
+  Vec4* position;
+  Vec4* velocity;
+  std::uint8_t* level;
+  int* id;
+  SIM_FN void operator()(int i) const {
+    predicted[i] = position[i] = velocity[i] = from[i];
+    level[i] = 0;
+    id[i] = i;
+  }
+};
+
+/// Walls of the tank that are near a particle: the planes that mirror the water.
+struct NearWalls {
+  Vec3 twice;     ///< per axis, twice the offset from the particle to the wall, in supports
+  unsigned axes;  ///< a bit per axis
+
+  SIM_FN NearWalls(const Domain& tank, Vec4 self, float reach) : twice{}, axes(0) {
+    const float inverse = 1 / self.w;
+    take(0, tank.low.x - self.x, tank.high.x - self.x, inverse, reach, twice.x);
+    take(1, tank.low.y - self.y, tank.high.y - self.y, inverse, reach, twice.y);
+    take(2, tank.low.z - self.z, tank.high.z - self.z, inverse, reach, twice.z);
+  }
+  SIM_FN void take(int axis, float low, float high, float inverse, float reach, float& to) {
+    const float wall = (-low < high ? low : high) * inverse;
+    if (!(fabsf(wall) < reach)) return;
+    to = 2 * wall;
+    axes |= 1u << axis;
+  }
+  SIM_FN Vec3 mirrored(Vec3 offset, unsigned image) const {
+    return {image & 1u ? twice.x - offset.x : offset.x, image & 2u ? twice.y - offset.y : offset.y,
+            image & 4u ? twice.z - offset.z : offset.z};
+  }
+};
+
+struct ShapeOne {
+  SurfaceRules rules;
+  CellTable cells;
+  const Vec4* place;
+  const int* slot;
+  const Vec4* velocity;
+  float frame_s, support, reach;
+  Domain tank;
+  Vec4* centre;
+  RenderShape* shape;
+
+  template <class Team>
+  struct Sum {
+    const ShapeOne& task;
+    Vec4 self;
+    NearWalls walls;
+    Team team;
+    SurfaceMoments sum;
+    SIM_FN void operator()(int from, int to) {
+      const float inverse = 1 / self.w;
+      for (int j = from + team.rank(); j < to; j += Team::size) {
+        const Vec4 other = task.place[j];
+        const Vec3 offset = inverse * (xyz(other) - xyz(self));
+        const float size = other.w * inverse;
+        sum.add(task.rules, offset, size);
+        for (unsigned image = 1; image < 8 && walls.axes; ++image)
+          if ((image & ~walls.axes) == 0) sum.add(task.rules, walls.mirrored(offset, image), size);
+      }
+    }
+  };
+
+  template <class Team>
+  SIM_FN void operator()(int k, Team team) const {
+    const Vec4 self = place[k];
+    const int i = slot[k];
+    if (!(self.w > 0)) {
+      if (team.rank() == 0) {
+        centre[i] = self;
+        shape[i] = {};
+      }
+      return;
+    }
+    Sum<Team> task{*this, self, NearWalls(tank, self, reach), team, {}};
+    // The grid's margin is a share of the mean of both supports.
+    const float margin = 2 * reach * self.w / (self.w + support);
+    cells.around(self, margin, [&task](int from, int to) { task(from, to); });
+    SurfaceMoments sum;
+    sum.mass = team.sum(task.sum.mass);
+    sum.reach = team.sum(task.sum.reach);
+    sum.crowd = team.sum(task.sum.crowd);
+    sum.first = {team.sum(task.sum.first.x), team.sum(task.sum.first.y), team.sum(task.sum.first.z)};
+    const Symmetric3& s = task.sum.second;
+    sum.second = {team.sum(s.xx), team.sum(s.yy), team.sum(s.zz),
+                  team.sum(s.xy), team.sum(s.xz), team.sum(s.yz)};
+    if (team.rank() != 0) return;
+    const Vec3 way = velocity ? frame_s * xyz(velocity[i]) : Vec3{0, 0, 0};
+    const Ellipsoid drawn = ellipsoid_of(rules, sum, self.w, way);
+    centre[i] = with_w(xyz(self) + drawn.centre, 0.25f * self.w);
+    shape[i] = packed(drawn.square);
+  }
+};
+
+}  // namespace
+
+void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape) {
+  if (from.n == 0) return;
+  if (from.n > sorted_.capacity()) {
+    sorted_.allocate(
+        columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Predicted), from.n,
+        from.n + from.n / 4);
+  }
+  sorted_.resize(from.n);
+  ColumnArrays& to = sorted_.all();
+  for_each("copy for surface", from.n,
+           CopyForSurface{from.position, to.predicted.data(), to.position.data(), to.velocity.data(),
+                          to.level.data(), to.id.data()});
+  // Cells as wide as a support: most search radii reach into the adjacent cells only.
+  grid_.build(sorted_, 1, from.tank, from.support);
+  const SurfaceRules rules;
+  Domain mirrors = from.tank;
+  if (!from.lid) mirrors.high.y = 1e30f;
+  for_each_team("ellipsoids", from.n,
+                ShapeOne{.rules = rules,
+                         .cells = grid_.cells(),
+                         .place = to.predicted.data(),
+                         .slot = to.id.data(),
+                         .velocity = from.velocity,
+                         .frame_s = from.frame_s,
+                         .support = from.support,
+                         .reach = rules.reach * (from.mixed ? rules.coarser : 1.0f),
+                         .tank = mirrors,
+                         .centre = centre,
+                         .shape = shape});
+}
+
+void Ellipsoids::read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
+                      std::vector<RenderShape>& shapes) {
+  static_assert(sizeof(RenderParticle) == sizeof(Vec4));
+  const auto n = static_cast<std::size_t>(from.n);
+  centre_.resize(n);
+  shape_.resize(n);
+  compute(from, centre_.data(), shape_.data());
+  particles.resize(n);
+  copy_to_host(particles.data(), centre_.data(), n * sizeof(Vec4));
+  shapes = shape_.to_host();
+}
+
+}  // namespace sim::SIM_BACKEND

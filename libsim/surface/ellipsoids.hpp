@@ -1,0 +1,57 @@
+#pragma once
+/// The ellipsoids of all particles, for drawing. Computed only when a picture is drawn; the solver's state is
+/// not changed.
+
+#include "libsim/neighbors/grid.hpp"
+#include "libsim/particles/particle_state.hpp"
+#include "libsim/surface/anisotropy_yu2013.hpp"
+
+namespace sim::SIM_BACKEND {
+
+/// The particles of a picture, in the back end's memory.
+struct SurfaceParticles {
+  int n;
+  const Vec4* position;  ///< m, and the support h, m; h = 0: an unused slot
+  const Vec4* velocity;  ///< m/s; nullptr: unknown
+  float frame_s;         ///< duration of a frame, s
+  float support;         ///< a support between the finest and the coarsest of the water, m
+  bool mixed;            ///< supports differ
+  Domain tank;           ///< its walls and floor, and a lid, mirror the water
+  bool lid;
+};
+
+class Ellipsoids {
+ public:
+  /// Writes each particle's drawn centre and radius r = h / 4 to centre[i], and its ellipsoid to shape[i].
+  void compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
+
+  /// The same, copied to the host.
+  void read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
+            std::vector<RenderShape>& shapes);
+
+ private:
+  Array<Vec4> centre_;
+  Array<RenderShape> shape_;
+  Particles sorted_;  ///< copies of the positions, sorted by cell; the ids are the indices in `from`
+  Grid grid_;
+};
+
+/// Packs the matrix Ellipsoid::square as RenderShape describes.
+SIM_FN RenderShape packed(const Symmetric3& square) {
+  const float scale = at_least(at_least(square.xx, square.yy), square.zz);
+  const float by = scale > 0 ? 32767 / scale : 0.0f;
+  const auto pair = [by](float low, float high) {
+    const auto bits = [by](float x) {
+      return static_cast<std::uint32_t>(static_cast<int>(floorf(x * by + 0.5f))) & 0xffffu;
+    };
+    return bits(low) | bits(high) << 16;
+  };
+  RenderShape out;
+  out.word[0] = pair(square.xx, square.yy);
+  out.word[1] = pair(square.zz, square.xy);
+  out.word[2] = pair(square.xz, square.yz);
+  memcpy(&out.word[3], &scale, sizeof scale);
+  return out;
+}
+
+}  // namespace sim::SIM_BACKEND
