@@ -26,6 +26,10 @@ void add_headset_command(CLI::App& app);
 /// hard case, a scene that strains the solver, can change before the case fails.
 void add_stability_command(CLI::App& app);
 
+/// vip-bench surface: errors of the drawn surface of water of known shape, change of the picture where levels
+/// change, and milliseconds of the renderer.
+void add_surface_command(CLI::App& app);
+
 /// vip-bench table1: the paper's Table 1, image quality of the methods' pictures with those of HiRes as
 /// reference.
 void add_table1_command(CLI::App& app);

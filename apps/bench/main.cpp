@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   apps::add_growth_command(*app);
   apps::add_headset_command(*app);
   apps::add_stability_command(*app);
+  apps::add_surface_command(*app);
   apps::add_table1_command(*app);
   apps::add_table2_command(*app);
   return apps::run_program(*app, argc, argv);

@@ -124,7 +124,7 @@ void run_headless(const ViewOptions& options) {
   PictureFolder pictures(options);
   const PreparedFluid prepared = prepare_fluid(options);
   std::printf("OpenGL: %s\n", sim::gl_description().c_str());
-  sim::FluidPicture picture(drawn(prepared));
+  sim::FluidPicture picture(drawn(prepared), render_options(options));
   const sim::View view = sim::make_view(prepared.camera, options.size.width, options.size.height);
 
   Timing timing;

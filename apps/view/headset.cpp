@@ -64,7 +64,8 @@ class HeadsetViewer {
     // viewer never go back.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
     const auto make = [fluid] { return std::move(*fluid); };
-    fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing);
+    fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing,
+                   render_options(options));
   }
 
   Shown run() {

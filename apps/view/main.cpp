@@ -53,6 +53,9 @@ int main(int argc, char** argv) {
       ->check(apps::output_folder());
   apps::add_count(app, "--every", options.every, 1, 10'000, "Write a picture every this many frames");
   apps::add_size(app, options.size, "Picture or window, px");
+  app.add_option("--surface", options.surface, "Particles are drawn as ellipsoids or spheres")
+      ->check(CLI::IsMember({"ellipsoids", "spheres"}))
+      ->capture_default_str();
   app.add_option("--camera", options.camera, "view or overview")
       ->check(CLI::IsMember({"view", "overview"}))
       ->capture_default_str();

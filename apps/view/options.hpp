@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/render/fluid_renderer.hpp"
 #include "libsim/setting/setting_file.hpp"
 #include "libsim/simulation.hpp"
 #include "libstudy/sweep/setting_price.hpp"
@@ -26,6 +27,7 @@ struct ViewOptions {
   int levels = 4;                           ///< number of levels, N
   std::optional<double> alpha;              ///< temporal feature's weight in saliency; none = the preset's
   std::optional<int> iterations;            ///< solver iterations per substep; none = the scene's
+  std::string surface = "ellipsoids";       ///< ellipsoids | spheres: how the particles are drawn
   std::string camera = "view";              ///< view | overview
   std::string ptpe;                         ///< file of a fitted PTPE model (a, b of tau); empty = none
   std::optional<sim::SettingFile> setting;  ///< the setting file that take_setting() read
@@ -71,6 +73,9 @@ std::vector<std::string> price_lines(const ViewOptions& options, const sim::Solv
 /// schedule of passes. Calls `settling` with (done, total) for each settling frame; if `settling` is empty,
 /// shows a progress bar.
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling = {});
+
+/// The renderer's options that the program's options choose.
+sim::RenderOptions render_options(const ViewOptions& options);
 
 /// Runs the frames without a display, writes the pictures and prints times.
 void run_headless(const ViewOptions& options);

@@ -72,6 +72,12 @@ sim::Scene drawn(const PreparedFluid& prepared) {
   return sim::acting_scene(prepared.scene, prepared.setting.method);
 }
 
+sim::RenderOptions render_options(const ViewOptions& options) {
+  sim::RenderOptions out;
+  out.surface = sim::parse_surface(options.surface);
+  return out;
+}
+
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));

@@ -42,11 +42,8 @@ void print_passes(const base::Json& figures) {
   std::printf("    %-12s %7.3f ms\n", "all passes", sum);
 }
 
-namespace {
-
-constexpr float eye_distance_m = 0.064F;
-
 std::vector<sim::View> make_views(const sim::Scene& scene, const base::PictureSize& size, int count) {
+  constexpr float eye_distance_m = 0.064F;
   std::vector<sim::View> views(static_cast<std::size_t>(count),
                                sim::make_view(scene.view, size.width, size.height));
   for (int i = 0; i < count; ++i) {
@@ -57,8 +54,11 @@ std::vector<sim::View> make_views(const sim::Scene& scene, const base::PictureSi
   return views;
 }
 
-sim::RenderOptions timed_passes() {
+namespace {
+
+sim::RenderOptions timed_passes(sim::Surface surface) {
   sim::RenderOptions options;
+  options.surface = surface;
   options.time_passes = true;
   return options;
 }
@@ -74,12 +74,13 @@ struct RenderTimer::State {
   std::vector<double> transfer_ms, render_ms;
   PassTable passes;
 
-  State(sim::GlContext current, const sim::Scene& scene, const base::PictureSize& chosen, int count)
+  State(sim::GlContext current, const sim::Scene& scene, const base::PictureSize& chosen, int count,
+        sim::Surface surface)
       : size(chosen),
         context(std::move(current)),
         views(make_views(scene, chosen, count)),
         target(count * chosen.width, chosen.height),
-        picture(scene, timed_passes()) {}
+        picture(scene, timed_passes(surface)) {}
 
   void transfer(sim::Simulation& fluid) {
     picture.take(fluid);
@@ -89,8 +90,8 @@ struct RenderTimer::State {
 };
 
 RenderTimer::RenderTimer(sim::GlContext context, const sim::Scene& scene, const base::PictureSize& size,
-                         int views)
-    : state_(std::make_unique<State>(std::move(context), scene, size, views)) {}
+                         int views, sim::Surface surface)
+    : state_(std::make_unique<State>(std::move(context), scene, size, views, surface)) {}
 
 RenderTimer::~RenderTimer() = default;
 

@@ -36,11 +36,15 @@ class PassTable {
 /// Prints PassTable::figures(), the longest pass first, and their sum.
 void print_passes(const base::Json& figures);
 
+/// Views of the scene's camera for `count` eyes, side by side, each of this size.
+std::vector<sim::View> make_views(const sim::Scene& scene, const base::PictureSize& size, int count);
+
 /// Draws an off-screen picture of a scene and times it. The context stays current on this thread.
 class RenderTimer {
  public:
   /// `views`: 1, or 2 side by side, 64 mm apart. base::Error for a size that the driver refuses.
-  RenderTimer(sim::GlContext context, const sim::Scene& scene, const base::PictureSize& size, int views);
+  RenderTimer(sim::GlContext context, const sim::Scene& scene, const base::PictureSize& size, int views,
+              sim::Surface surface = sim::Surface::Ellipsoids);
   ~RenderTimer();
 
   /// Milliseconds of one picture; each part ends when the device is idle.

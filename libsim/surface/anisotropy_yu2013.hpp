@@ -101,7 +101,7 @@ struct SurfaceRules {
   /// Distance from a particle of the top layer of a flat surface to the mean of the particles around it, in
   /// radii of search. The centre is moved by the difference to this distance, so that a flat surface stays
   /// where it is, and a particle that stands out or lies deep is moved to it.
-  float flat_mean = 0.30f;
+  float flat_mean = 0.217f;
   /// Radius of the sphere of equal volume: RenderOptions::radius_scale of touching spheres without gaps.
   float volume_radius = 1.5f;
   float least_axis = 1;    ///< shortest half axis in water

@@ -163,6 +163,7 @@ BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing vi
       scene_(sim::acting_scene(sim::baked_scene(bake_->header()), sim::parse_method(bake_->header().method))),
       viewing_(std::move(viewing)),
       options_(options),
+      surface_(scene_),
       painted_(painted(scene_, paint_temperature && bake_->header().reference_k)) {
   if (sim::any_free(scene_.obstacles))
     throw base::Error(description(),
@@ -180,7 +181,9 @@ FrameFacts BakedParticles::prepare(std::int64_t step) {
 }
 
 void BakedParticles::draw(const Canvas& canvas) {
-  particles_.upload(frame_.particles);
+  places_ = frame_.particles;
+  if (options_.surface == sim::Surface::Ellipsoids) surface_.shape(places_, shapes_);
+  particles_.upload(places_, shapes_);
   if (!renderer_) renderer_ = std::make_unique<sim::FluidRenderer>(scene_, options_);
   renderer_->place_obstacles(frame_.facts.time_s);
   const bool foams = bake_->header().max_foam > 0;

@@ -19,6 +19,7 @@
 #include "libsim/render/temperature_scale.hpp"
 #include "libsim/setting/solver_setting.hpp"
 #include "libsim/simulation.hpp"
+#include "libsim/surface/host_surface.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/stimulus/framing.hpp"
 
@@ -67,8 +68,11 @@ class BakedParticles final : public Stimulus {
   sim::Scene scene_;
   Viewing viewing_;
   sim::RenderOptions options_;
+  sim::HostSurface surface_;
   std::optional<sim::TemperatureScale> painted_;
   sim::BakeFrame frame_;
+  std::vector<sim::RenderParticle> places_;  ///< of the frame's particles, as drawn
+  std::vector<sim::RenderShape> shapes_;
   std::unique_ptr<sim::FluidRenderer> renderer_;
   sim::ParticleBuffer particles_, foam_;
 };

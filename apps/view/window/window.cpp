@@ -37,9 +37,9 @@ sim::Scene as_listed(const PreparedFluid& prepared) {
 }
 
 struct Running {
-  explicit Running(PreparedFluid fluid)
+  Running(PreparedFluid fluid, const sim::RenderOptions& options)
       : prepared(std::move(fluid)),
-        picture(as_listed(prepared)),
+        picture(as_listed(prepared), options),
         painter(drawn(prepared), prepared.finest_spacing_m) {}
 
   PreparedFluid prepared;
@@ -117,7 +117,7 @@ std::unique_ptr<Running> Viewer::make_fluid(const ViewOptions& options) {
     glfwSwapBuffers(window_.get());
   };
   show(0, 1);
-  return std::make_unique<Running>(prepare_fluid(options, show));
+  return std::make_unique<Running>(prepare_fluid(options, show), render_options(options));
 }
 
 void Viewer::take(std::unique_ptr<Running> fluid) {
