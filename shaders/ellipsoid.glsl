@@ -15,6 +15,7 @@ struct Sphere {
   vec3 row_z;     // W maps the ellipsoid to the unit sphere and is lower triangular: its last row,
   vec3 row_xy;    // W.xx, W.yx and W.yy
   vec3 at;        // W centre
+  float share;    // of its chords that count as thickness: an ellipsoid larger than its sphere holds no more water
 };
 
 Sphere sphere_of(uint i) {
@@ -47,6 +48,7 @@ Sphere sphere_of(uint i) {
   precise vec3 at = vec3(w_xx * centre.x, w_yx * centre.x + w_yy * centre.y,
                          row_z.x * centre.x + row_z.y * centre.y + row_z.z * centre.z);
   precise float radius = particle.w * origin.w;
+  precise float share = min(radius * radius * radius * w_xx * w_yy * w_zz, 1.0);
   const vec3 reach = sqrt(vec3(square[0].x, square[1].y, square[2].z));
   const bvec3 low = lessThan(particle.xyz, reach);
   const bvec3 high = greaterThan(particle.xyz, tank_high() - reach);
@@ -55,7 +57,7 @@ Sphere sphere_of(uint i) {
   const vec3 inward = mix(vec3(1), vec3(-1), greaterThan(wall, vec3(0)));
   const uint nearest = floatBitsToUint(max(-0.99999 * eye.z - 1.0001 * sqrt(diagonal.z), origin.z));
   return Sphere(centre, radius, cut, wall - eye_to_world[3].xyz, inward, mat3(eye_to_world), origin.z, nearest,
-                diagonal, mixed, row_z, row_xy, at);
+                diagonal, mixed, row_z, row_xy, at, share);
 }
 
 vec3 half_extent(Sphere s) { return sqrt(s.diagonal); }
@@ -102,6 +104,6 @@ float whole_chord(Sphere s, vec2 slope) {
   precise float z = s.at.x * way.y - s.at.y * way.x;
   precise float inverse = 1.0 / (way.x * way.x + way.y * way.y + way.z * way.z);
   precise float square = 1.0 - (x * x + y * y + z * z) * inverse;
-  precise float chord = 2.0 * sqrt(max(square, 0.0) * inverse * (slope.x * slope.x + slope.y * slope.y + 1.0));
+  precise float chord = s.share * 2.0 * sqrt(max(square, 0.0) * inverse * (slope.x * slope.x + slope.y * slope.y + 1.0));
   return chord;
 }

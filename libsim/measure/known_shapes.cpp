@@ -15,7 +15,7 @@ namespace {
 
 using sim::Vec3d;
 constexpr double finest_m = 0.05;  // spacing of level 0
-constexpr double px_per_spacing = 16;
+constexpr double px_per_spacing = 32;
 constexpr double far_away = 40;  // distance of the camera, in half sizes of the shape
 
 double spacing_of(int level) { return finest_m * std::cbrt(static_cast<double>(1 << level)); }

@@ -144,7 +144,6 @@ SurfaceParticles surface_particles_of(const FluidState& state, bool lid) {
           .velocity = p.velocity.data(),
           .frame_s = static_cast<float>(state.parameters.frame_s()),
           .support = state.one_level ? state.lightest_support : state.supports.h[1],
-          .mixed = !state.one_level,
           .tank = state.domain,
           .lid = lid};
 }

@@ -92,10 +92,8 @@ struct Eigen3 {
 /// Numbers of the drawn surface. Lengths are in units of the particle's radius r unless a comment says
 /// otherwise; d = 2 r is the spacing and h = 4 r the support.
 struct SurfaceRules {
-  /// Radius, in supports of the coarser particle of a pair, within which particles count.
+  /// Radius, in supports of the particle, within which others count: further than the spacing of the coarsest.
   float reach = 1.25f;
-  /// A particle reaches at most this many times its own radius of search: one level coarser.
-  float coarser = 1.26f;
   /// lambda of Yu and Turk, Eq. 6: how far a centre follows the mean of the particles around it.
   float smoothing = 0.9f;
   /// Distance from a particle of the top layer of a flat surface to the mean of the particles around it, in
@@ -104,6 +102,8 @@ struct SurfaceRules {
   float flat_mean = 0.217f;
   /// Radius of the sphere of equal volume: RenderOptions::radius_scale of touching spheres without gaps.
   float volume_radius = 1.5f;
+  /// Factor of the long axes of a particle at the surface: a smoother outline than at constant volume.
+  float widening = 1.2f;
   float least_axis = 1;    ///< shortest half axis in water
   float most_axis = 2.5f;  ///< longest half axis
   /// Weights of neighbours, in particles of the coarser level, between which a drop becomes water.
@@ -115,14 +115,14 @@ struct SurfaceRules {
 /// Weighted sums over the particles around a particle, itself included. Offsets are in supports of the
 /// particle.
 struct SurfaceMoments {
-  float mass = 0, reach = 0, crowd = 0;
+  float mass = 0, crowd = 0;
   Vec3 first{};
   Symmetric3 second{};
 
   /// `offset`: from the particle to the other one; `size`: support of the other one; both in supports of the
   /// particle.
   SIM_FN void add(const SurfaceRules& rules, Vec3 offset, float size) {
-    const float r = rules.reach * at_least(at_most(size, rules.coarser), 1.0f);
+    const float r = rules.reach;
     const float square = dot(offset, offset);
     if (!(square < r * r)) return;
     const float share = quotient(square, r * r);
@@ -130,7 +130,6 @@ struct SurfaceMoments {
     const float falloff = 1 - share * rough_root(share);  // 1 - (distance / r)^3, Yu and Turk Eq. 11
     const float weight = falloff * volume;
     mass += weight;
-    reach += weight * r;
     crowd += falloff * at_most(volume, 1.0f);
     first += weight * offset;
     second.add(weight, offset);
@@ -183,14 +182,17 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
   const Vec3 mean = inverse * sum.first;
   Symmetric3 covariance = inverse * sum.second;
   covariance.add(-1, mean);
+  const float away = length(mean);
+  const float flat = rules.flat_mean * rules.reach;
+  const float exposed = smooth_rise(0.2f, 0.6f, away / flat);
   const Eigen3 eigen(covariance);
   float axis[3];
   half_axes(rules, eigen.value, axis);
+  const float wider = exposed * (rules.widening - 1);
+  axis[1] *= 1 + wider * axis[1] / axis[0];
+  axis[0] *= 1 + wider;
   Symmetric3 square{};
   for (int k = 0; k < 3; ++k) square.add(r * r * axis[k] * axis[k], eigen.axis[k]);
-  const float away = length(mean);
-  const float flat = rules.flat_mean * inverse * sum.reach;
-  const float exposed = smooth_rise(0.2f, 0.6f, away / flat);
   Vec3 shift{};
   if (exposed > 0) {
     const Vec3 out = (-1 / away) * mean;

@@ -1,4 +1,5 @@
 #include "libsim/surface/ellipsoids.hpp"
+#include <cstdlib>
 
 namespace sim::SIM_BACKEND {
 
@@ -47,7 +48,7 @@ struct ShapeOne {
   const Vec4* place;
   const int* slot;
   const Vec4* velocity;
-  float frame_s, support, reach;
+  float frame_s, support;
   Domain tank;
   Vec4* centre;
   RenderShape* shape;
@@ -83,13 +84,12 @@ struct ShapeOne {
       }
       return;
     }
-    Sum<Team> task{*this, self, NearWalls(tank, self, reach), team, {}};
+    Sum<Team> task{*this, self, NearWalls(tank, self, rules.reach), team, {}};
     // The grid's margin is a share of the mean of both supports.
-    const float margin = 2 * reach * self.w / (self.w + support);
+    const float margin = 2 * rules.reach * self.w / (self.w + support);
     cells.around(self, margin, [&task](int from, int to) { task(from, to); });
     SurfaceMoments sum;
     sum.mass = team.sum(task.sum.mass);
-    sum.reach = team.sum(task.sum.reach);
     sum.crowd = team.sum(task.sum.crowd);
     sum.first = {team.sum(task.sum.first.x), team.sum(task.sum.first.y), team.sum(task.sum.first.z)};
     const Symmetric3& s = task.sum.second;
@@ -119,7 +119,9 @@ void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape
                           to.level.data(), to.id.data()});
   // Cells as wide as a support: most search radii reach into the adjacent cells only.
   grid_.build(sorted_, 1, from.tank, from.support);
-  const SurfaceRules rules;
+  SurfaceRules rules;
+#define ENV(x) if (const char* e = getenv("S_" #x)) rules.x = static_cast<float>(atof(e));
+  ENV(smoothing) ENV(flat_mean) ENV(volume_radius) ENV(least_axis) ENV(most_axis) ENV(widening) ENV(reach)
   Domain mirrors = from.tank;
   if (!from.lid) mirrors.high.y = 1e30f;
   for_each_team("ellipsoids", from.n,
@@ -130,7 +132,6 @@ void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape
                          .velocity = from.velocity,
                          .frame_s = from.frame_s,
                          .support = from.support,
-                         .reach = rules.reach * (from.mixed ? rules.coarser : 1.0f),
                          .tank = mirrors,
                          .centre = centre,
                          .shape = shape});

@@ -15,7 +15,6 @@ struct SurfaceParticles {
   const Vec4* velocity;  ///< m/s; nullptr: unknown
   float frame_s;         ///< duration of a frame, s
   float support;         ///< a support between the finest and the coarsest of the water, m
-  bool mixed;            ///< supports differ
   Domain tank;           ///< its walls and floor, and a lid, mirror the water
   bool lid;
 };

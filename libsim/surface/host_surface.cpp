@@ -44,7 +44,6 @@ void HostSurface::shape(std::vector<RenderParticle>& particles, std::vector<Rend
                      .velocity = nullptr,
                      .frame_s = 0,
                      .support = std::min(1.26F * finest, coarsest),
-                     .mixed = coarsest > 1.01F * finest,
                      .tank = s.tank,
                      .lid = s.lid},
                     particles, shapes);
