@@ -83,6 +83,7 @@ std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::Simulat
         const double change = change_between(one.last, now);
         (turned ? out[k].turning : out[k].other) += change;
         ++(turned ? out[k].turns : out[k].others);
+        if (getenv("TRACE")) fprintf(stderr, "\nT %s %d %d %d %.4f n %ld\n", scene.name.c_str(), frame, (int)k, turned, change, (long)fluid->particle_count());
       }
       one.last = std::move(now);
     }

@@ -272,7 +272,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void read_surface(std::vector<RenderParticle>& out, std::vector<RenderShape>& shapes) override {
-    surface_.read(surface_particles_of(state_, scene_.lid), out, shapes);
+    surface_.read(surface_particles_of(state_, scene_.lid, frame_), out, shapes);
   }
 
   bool copy_surface_to_gl(const GlBufferRef& particles, const GlBufferRef& shapes) override {
@@ -281,7 +281,7 @@ class FluidSimulation final : public Simulation {
         particles.bytes >= needed && shapes.bytes >= needed && gl_.accept({particles, shapes});
     if (shared) {
       const auto& memory = gl_.map();
-      surface_.compute(surface_particles_of(state_, scene_.lid), static_cast<Vec4*>(memory[0]),
+      surface_.compute(surface_particles_of(state_, scene_.lid, frame_), static_cast<Vec4*>(memory[0]),
                        static_cast<RenderShape*>(memory[1]));
     }
     gl_.unmap();
@@ -365,6 +365,7 @@ class FluidSimulation final : public Simulation {
   void keep(Archive& archive) {
     archive(frame_, relaxed_, fall_speed_, substeps_, substeps_taken_, compression_, tolerance_, keeper_);
     keep_fluid(archive, state_);
+    archive(surface_);
   }
 
   void resume(std::string_view body) {

@@ -137,11 +137,14 @@ void pack_for_drawing(const Particles& particles, Vec4* out) {
   for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
 }
 
-SurfaceParticles surface_particles_of(const FluidState& state, bool lid) {
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame) {
   const auto& p = state.particles.all();
   return {.n = state.particles.size(),
           .position = p.position.data(),
           .velocity = p.velocity.data(),
+          .id = p.id.data(),
+          .most_ids = state.particles.capacity(),
+          .frame = frame,
           .frame_s = static_cast<float>(state.parameters.frame_s()),
           .support = state.one_level ? state.lightest_support : state.supports.h[1],
           .tank = state.domain,

@@ -37,7 +37,7 @@ void render_particles_of(const Particles& particles, std::vector<RenderParticle>
 void pack_for_drawing(const Particles& particles, Vec4* out);
 
 /// The particles as input of their ellipsoids.
-SurfaceParticles surface_particles_of(const FluidState& state, bool lid);
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame);
 
 /// Counts of foam particles; all zero without foam.
 FoamReport report_of(const FoamPool& pool);

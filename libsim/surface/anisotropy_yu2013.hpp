@@ -92,7 +92,8 @@ struct Eigen3 {
 /// Numbers of the drawn surface. Lengths are in units of the particle's radius r unless a comment says
 /// otherwise; d = 2 r is the spacing and h = 4 r the support.
 struct SurfaceRules {
-  /// Radius, in supports of the particle, within which others count: further than the spacing of the coarsest.
+  /// Radius, in supports of the particle, within which others count: further than the spacing of the
+  /// coarsest.
   float reach = 1.25f;
   /// lambda of Yu and Turk, Eq. 6: how far a centre follows the mean of the particles around it.
   float smoothing = 0.9f;
@@ -110,6 +111,11 @@ struct SurfaceRules {
   float alone = 1, crowded = 4;
   float drop_radius = 0.8f;  ///< radius of a particle without neighbours
   float most_stretch = 2;    ///< largest ratio of a drop's long half axis to drop_radius
+  /// Share of the way from the last picture's ellipsoid to the present one that a frame takes: a turn of the
+  /// levels, every fourth frame, is spread over the frames up to the next.
+  float follow = 0.3f;
+  float mergew = 2.5f, mergemode = 0;
+  float newborn = 0.15f;  ///< share of Ellipsoid::square with which a particle without a last picture begins
 };
 
 /// Weighted sums over the particles around a particle, itself included. Offsets are in supports of the
@@ -140,6 +146,7 @@ struct SurfaceMoments {
 struct Ellipsoid {
   Vec3 centre;        ///< relative to the particle, m
   Symmetric3 square;  ///< sum over the axes of (half axis)^2 (direction) (direction)^T, m2
+  float radius;       ///< of the particle, for the depth filter and the thickness, m
 };
 
 /// A drop of a particle of radius r: stretched along its way in one frame, at constant volume.
@@ -177,7 +184,7 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
   const float r = 0.25f * h;
   const Symmetric3 drop = drop_of(rules, r, way);
   const float water = smooth_rise(rules.alone, rules.crowded, sum.crowd - 1);
-  if (!(water > 0)) return {{0, 0, 0}, drop};
+  if (!(water > 0)) return {{0, 0, 0}, drop, r};
   const float inverse = 1 / sum.mass;
   const Vec3 mean = inverse * sum.first;
   Symmetric3 covariance = inverse * sum.second;
@@ -199,7 +206,29 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
     const float extent = sqrtf(at_least(dot(out, square.times(out)), 0.0f));
     shift = (water * exposed * (rules.smoothing * (flat - away) * h + r - extent)) * out;
   }
-  return {shift, water * square + (1 - water) * drop};
+  return {shift, water * square + (1 - water) * drop, r};
+}
+
+/// The ellipsoid `target` as it is drawn if the last picture had `last` (its centre relative to the
+/// particle's present place, moved along with the water). `last_r`: the particle's radius then; 0: there was
+/// none. So a split or a merge changes the picture gradually.
+SIM_FN Ellipsoid blended(const SurfaceRules& rules, const Ellipsoid& target, Ellipsoid last, float last_r,
+                         float r, float follow) {
+  const Vec3 way = target.centre - last.centre;
+  const float furthest = 2 * at_least(r, last_r);
+  if (!(last_r > 0) || dot(way, way) > furthest * furthest)
+    return {target.centre, rules.newborn * target.square, r};
+  if (r > 1.1f * last_r) {
+    // Of two merged particles one remains, half way between them: it begins where both were.
+    if (rules.mergemode == 0) { last.square.add(rules.mergew, way);
+    last.centre = target.centre; }
+    if (rules.mergemode == 1) { return target; }
+    if (rules.mergemode == 2) { last.square.add(rules.mergew, way); last.square = (1.0f) * last.square + 0.5f * target.square; 
+    last.centre = target.centre; }
+  }
+  return {last.centre + follow * (target.centre - last.centre),
+          follow * target.square + (1 - follow) * last.square,
+          follow * r + (1 - follow) * last.radius};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -42,8 +42,40 @@ struct NearWalls {
   }
 };
 
+/// The drawn ellipsoids of two frames, by id.
+struct Memory {
+  const int* id = nullptr;  ///< nullptr: no memory
+  int most_ids = 0;
+  const Vec4* last_centre = nullptr;  ///< nullptr: no last picture
+  const RenderShape* last_shape = nullptr;
+  const float* last_radius = nullptr;
+  Vec4* centre = nullptr;
+  RenderShape* shape = nullptr;
+  float* radius = nullptr;  ///< as drawn; centre[k].w is the particle's own
+  float frames = 0;  ///< since the last picture
+  float follow = 1;
+
+  /// Blends the ellipsoid of particle i with that of the last picture, and stores it for the next one.
+  SIM_FN Ellipsoid blend(const SurfaceRules& rules, int i, Vec3 place, float r, Vec3 way,
+                         Ellipsoid drawn) const {
+    if (!id) return drawn;
+    const int k = id[i];
+    if (k < 0 || k >= most_ids) return drawn;
+    if (last_centre) {
+      const Vec4 last = last_centre[k];
+      const Ellipsoid then{xyz(last) + frames * way - place, unpacked(last_shape[k]), last_radius[k]};
+      drawn = blended(rules, drawn, then, last.w, r, follow);
+    }
+    centre[k] = with_w(place + drawn.centre, r);
+    shape[k] = packed(drawn.square);
+    radius[k] = drawn.radius;
+    return drawn;
+  }
+};
+
 struct ShapeOne {
   SurfaceRules rules;
+  Memory memory;
   CellTable cells;
   const Vec4* place;
   const int* slot;
@@ -97,13 +129,25 @@ struct ShapeOne {
                   team.sum(s.xy), team.sum(s.xz), team.sum(s.yz)};
     if (team.rank() != 0) return;
     const Vec3 way = velocity ? frame_s * xyz(velocity[i]) : Vec3{0, 0, 0};
-    const Ellipsoid drawn = ellipsoid_of(rules, sum, self.w, way);
-    centre[i] = with_w(xyz(self) + drawn.centre, 0.25f * self.w);
+    const float r = 0.25f * self.w;
+    const Ellipsoid drawn = memory.blend(rules, i, xyz(self), r, way, ellipsoid_of(rules, sum, self.w, way));
+    centre[i] = with_w(xyz(self) + drawn.centre, drawn.radius);
     shape[i] = packed(drawn.square);
   }
 };
 
 }  // namespace
+
+/// Makes the last picture's ellipsoids those before, and room for the present ones.
+void Ellipsoids::begin_frame(const SurfaceParticles& from) {
+  if (from.frame != now_.frame) std::swap(before_, now_);
+  now_.frame = from.frame;
+  const auto ids = static_cast<std::size_t>(from.most_ids);
+  now_.centre.resize(ids);
+  now_.shape.resize(ids);
+  now_.radius.resize(ids);
+  now_.centre.zero();
+}
 
 void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape) {
   if (from.n == 0) return;
@@ -120,12 +164,33 @@ void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape
   // Cells as wide as a support: most search radii reach into the adjacent cells only.
   grid_.build(sorted_, 1, from.tank, from.support);
   SurfaceRules rules;
-#define ENV(x) if (const char* e = getenv("S_" #x)) rules.x = static_cast<float>(atof(e));
-  ENV(smoothing) ENV(flat_mean) ENV(volume_radius) ENV(least_axis) ENV(most_axis) ENV(widening) ENV(reach)
-  Domain mirrors = from.tank;
+#define ENV(x) \
+  if (const char* e = getenv("S_" #x)) rules.x = static_cast<float>(atof(e));
+  ENV(smoothing)
+  ENV(flat_mean)
+  ENV(volume_radius) ENV(least_axis) ENV(most_axis) ENV(widening) ENV(follow) ENV(newborn) ENV(mergew) ENV(mergemode) ENV(reach)
+      Domain mirrors = from.tank;
   if (!from.lid) mirrors.high.y = 1e30f;
+  Memory memory;
+  if (from.id) {
+    begin_frame(from);
+    const int frames = from.frame - before_.frame;
+    const bool known = before_.frame >= 0 && frames > 0 && frames <= 4 &&
+                       before_.centre.size() == static_cast<std::size_t>(from.most_ids);
+    memory = {.id = from.id,
+              .most_ids = from.most_ids,
+              .last_centre = known ? before_.centre.data() : nullptr,
+              .last_shape = before_.shape.data(),
+              .last_radius = before_.radius.data(),
+              .centre = now_.centre.data(),
+              .shape = now_.shape.data(),
+              .radius = now_.radius.data(),
+              .frames = static_cast<float>(frames),
+              .follow = 1 - powf(1 - rules.follow, static_cast<float>(frames))};
+  }
   for_each_team("ellipsoids", from.n,
                 ShapeOne{.rules = rules,
+                         .memory = memory,
                          .cells = grid_.cells(),
                          .place = to.predicted.data(),
                          .slot = to.id.data(),

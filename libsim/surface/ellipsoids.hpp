@@ -8,33 +8,6 @@
 
 namespace sim::SIM_BACKEND {
 
-/// The particles of a picture, in the back end's memory.
-struct SurfaceParticles {
-  int n;
-  const Vec4* position;  ///< m, and the support h, m; h = 0: an unused slot
-  const Vec4* velocity;  ///< m/s; nullptr: unknown
-  float frame_s;         ///< duration of a frame, s
-  float support;         ///< a support between the finest and the coarsest of the water, m
-  Domain tank;           ///< its walls and floor, and a lid, mirror the water
-  bool lid;
-};
-
-class Ellipsoids {
- public:
-  /// Writes each particle's drawn centre and radius r = h / 4 to centre[i], and its ellipsoid to shape[i].
-  void compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
-
-  /// The same, copied to the host.
-  void read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
-            std::vector<RenderShape>& shapes);
-
- private:
-  Array<Vec4> centre_;
-  Array<RenderShape> shape_;
-  Particles sorted_;  ///< copies of the positions, sorted by cell; the ids are the indices in `from`
-  Grid grid_;
-};
-
 /// Packs the matrix Ellipsoid::square as RenderShape describes.
 SIM_FN RenderShape packed(const Symmetric3& square) {
   const float scale = at_least(at_least(square.xx, square.yy), square.zz);
@@ -52,5 +25,66 @@ SIM_FN RenderShape packed(const Symmetric3& square) {
   memcpy(&out.word[3], &scale, sizeof scale);
   return out;
 }
+
+SIM_FN Symmetric3 unpacked(const RenderShape& shape) {
+  float scale = 0;
+  memcpy(&scale, &shape.word[3], sizeof scale);
+  const float by = scale / 32767;
+  const auto low = [by](std::uint32_t word) {
+    return by * static_cast<float>(static_cast<std::int16_t>(word & 0xffffu));
+  };
+  const auto high = [by](std::uint32_t word) {
+    return by * static_cast<float>(static_cast<std::int16_t>(word >> 16));
+  };
+  return {low(shape.word[0]),  high(shape.word[0]), low(shape.word[1]),
+          high(shape.word[1]), low(shape.word[2]),  high(shape.word[2])};
+}
+
+/// The particles of a picture, in the back end's memory.
+struct SurfaceParticles {
+  int n;
+  const Vec4* position;  ///< m, and the support h, m; h = 0: an unused slot
+  const Vec4* velocity;  ///< m/s; nullptr: unknown
+  const int* id;         ///< ids, which last from frame to frame; nullptr: unknown, nothing is blended
+  int most_ids;          ///< other ids have no memory
+  int frame;             ///< number of the frame
+  float frame_s;         ///< duration of a frame, s
+  float support;         ///< a support between the finest and the coarsest of the water, m
+  Domain tank;           ///< its walls and floor, and a lid, mirror the water
+  bool lid;
+};
+
+/// Ellipsoids follow the present water gradually (SurfaceRules::follow) if the last picture was at most four
+/// frames ago, and at once after a longer break or a jump in time.
+class Ellipsoids {
+ public:
+  /// Writes each particle's drawn centre and radius r = h / 4 to centre[i], and its ellipsoid to shape[i].
+  void compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
+
+  /// The same, copied to the host.
+  void read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
+            std::vector<RenderShape>& shapes);
+
+  template <class Archive>
+  void keep(Archive& archive) {
+    for (Drawn* one : {&before_, &now_}) archive(one->frame, one->centre, one->shape, one->radius);
+  }
+
+ private:
+  /// The ellipsoids of a frame, by id; radius 0: no such particle.
+  struct Drawn {
+    int frame = -1;
+    Array<Vec4> centre;
+    Array<RenderShape> shape;
+    Array<float> radius;
+  };
+  void begin_frame(const SurfaceParticles& from);
+
+  Drawn before_, now_;
+  Array<Vec4> centre_;
+  Array<RenderShape> shape_;
+  Particles sorted_;  ///< copies of the positions, sorted by cell; the ids are the indices in `from`
+  Grid grid_;
+};
 
 }  // namespace sim::SIM_BACKEND
