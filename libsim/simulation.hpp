@@ -340,14 +340,18 @@ class Simulation {
   /// this back end cannot write the buffer (a CPU, or a context of another device) or the buffer is too
   /// small: then use read_particles and upload the result.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
-  /// The particles as ellipsoids (libsim/surface): smoothed places and radii, and shapes, in the solver's
-  /// order, copied to the host. No shapes: this simulation has none, and `out` is that of read_particles.
+  /// The particles as ellipsoids (libsim/surface): smoothed places and radii, and shapes, copied to the host;
+  /// in the order of read_particles, then those that merged into others and fade out. No shapes: this
+  /// simulation has none, and `out` is that of read_particles.
   virtual void read_surface(std::vector<RenderParticle>& out, std::vector<RenderShape>& shapes) {
     read_particles(out);
     shapes.clear();
   }
-  /// Like copy_to_gl, for the particles as ellipsoids.
-  virtual bool copy_surface_to_gl(const GlBufferRef&, const GlBufferRef&) { return false; }
+  /// Like copy_to_gl, for the particles as ellipsoids, in buffers for particle_capacity() of them. The number
+  /// written, or none instead of false.
+  virtual std::optional<std::int64_t> copy_surface_to_gl(const GlBufferRef&, const GlBufferRef&) {
+    return {};
+  }
   /// The scene's obstacles between two frames, in the scene's order, copied to the host.
   virtual std::vector<BodyMotion> read_obstacles() const { return {}; }
   /// Maximum number of foam particles; 0 without the effect foam.

@@ -4,11 +4,7 @@ namespace sim {
 
 void FluidPicture::take(Simulation& fluid) {
   uploaded_ = surface_ == Surface::Ellipsoids ? !take_surface(fluid) : !take_particles(fluid);
-  if (uploaded_) {
-    buffer_.upload(particles_, shapes_);
-  } else {
-    buffer_.set_count(fluid.particle_count());
-  }
+  if (uploaded_) buffer_.upload(particles_, shapes_);
   take_foam(fluid);
   taken_frame_ = fluid.frame();
   renderer_.place_obstacles(fluid.read_obstacles());
@@ -16,7 +12,10 @@ void FluidPicture::take(Simulation& fluid) {
 
 bool FluidPicture::take_particles(Simulation& fluid) {
   buffer_.reserve(fluid.particle_capacity());
-  if (fluid.copy_to_gl(buffer_.gl())) return true;
+  if (fluid.copy_to_gl(buffer_.gl())) {
+    buffer_.set_count(fluid.particle_count());
+    return true;
+  }
   fluid.read_particles(particles_);
   shapes_.clear();
   return false;
@@ -24,7 +23,10 @@ bool FluidPicture::take_particles(Simulation& fluid) {
 
 bool FluidPicture::take_surface(Simulation& fluid) {
   buffer_.reserve_with_shapes(fluid.particle_capacity());
-  if (fluid.copy_surface_to_gl(buffer_.gl(), buffer_.shapes())) return true;
+  if (const auto written = fluid.copy_surface_to_gl(buffer_.gl(), buffer_.shapes())) {
+    buffer_.set_count(*written);
+    return true;
+  }
   fluid.read_surface(particles_, shapes_);
   return false;
 }

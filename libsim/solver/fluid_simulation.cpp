@@ -272,21 +272,21 @@ class FluidSimulation final : public Simulation {
   }
 
   void read_surface(std::vector<RenderParticle>& out, std::vector<RenderShape>& shapes) override {
-    surface_.read(surface_particles_of(state_, scene_.lid, frame_), out, shapes);
+    surface_.read(surface_input(), out, shapes);
   }
 
-  bool copy_surface_to_gl(const GlBufferRef& particles, const GlBufferRef& shapes) override {
-    const std::size_t needed = static_cast<std::size_t>(state_.particles.size()) * sizeof(Vec4);
-    const bool shared =
-        particles.bytes >= needed && shapes.bytes >= needed && gl_.accept({particles, shapes});
-    if (shared) {
+  std::optional<std::int64_t> copy_surface_to_gl(const GlBufferRef& particles,
+                                                 const GlBufferRef& shapes) override {
+    const std::size_t room = static_cast<std::size_t>(particle_capacity()) * sizeof(Vec4);
+    std::optional<std::int64_t> written;
+    if (particles.bytes >= room && shapes.bytes >= room && gl_.accept({particles, shapes})) {
       const auto& memory = gl_.map();
-      surface_.compute(surface_particles_of(state_, scene_.lid, frame_), static_cast<Vec4*>(memory[0]),
-                       static_cast<RenderShape*>(memory[1]));
+      written = surface_.compute(surface_input(), static_cast<Vec4*>(memory[0]),
+                                 static_cast<RenderShape*>(memory[1]));
     }
     gl_.unmap();
     state_.saliency.input.give_back();
-    return shared;
+    return written;
   }
 
   std::string explain() const override {
@@ -300,6 +300,9 @@ class FluidSimulation final : public Simulation {
   }
 
  private:
+  SurfaceParticles surface_input() const {
+    return surface_particles_of(state_, scene_.lid, frame_, changes_levels_);
+  }
   bool is_of_one_level() const { return !changes_levels_ && levels_.first == levels_.second; }
 
   SaliencyState make_observer() const {

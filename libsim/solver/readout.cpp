@@ -137,14 +137,17 @@ void pack_for_drawing(const Particles& particles, Vec4* out) {
   for_each("pack for drawing", particles.size(), PackForDrawing{particles.all().position.data(), out});
 }
 
-SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame) {
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame, bool turns) {
   const auto& p = state.particles.all();
+  // From one turn of the levels to the next, in equal steps.
+  const int left = state.saliency.readings.levels_period_frames + 1 - state.levels.turns.frames_since;
   return {.n = state.particles.size(),
           .position = p.position.data(),
           .velocity = p.velocity.data(),
-          .id = p.id.data(),
+          .id = turns ? p.id.data() : nullptr,
           .most_ids = state.particles.capacity(),
           .frame = frame,
+          .follow = 1 / static_cast<float>(std::max(left, 1)),
           .frame_s = static_cast<float>(state.parameters.frame_s()),
           .support = state.one_level ? state.lightest_support : state.supports.h[1],
           .tank = state.domain,

@@ -36,8 +36,8 @@ void render_particles_of(const Particles& particles, std::vector<RenderParticle>
 /// Writes position and radius of each particle to `out`, in the back end's memory.
 void pack_for_drawing(const Particles& particles, Vec4* out);
 
-/// The particles as input of their ellipsoids.
-SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame);
+/// The particles as input of their ellipsoids. `turns`: their levels change, so that pictures are blended.
+SurfaceParticles surface_particles_of(const FluidState& state, bool lid, int frame, bool turns);
 
 /// Counts of foam particles; all zero without foam.
 FoamReport report_of(const FoamPool& pool);

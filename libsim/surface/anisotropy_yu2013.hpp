@@ -111,10 +111,7 @@ struct SurfaceRules {
   float alone = 1, crowded = 4;
   float drop_radius = 0.8f;  ///< radius of a particle without neighbours
   float most_stretch = 2;    ///< largest ratio of a drop's long half axis to drop_radius
-  /// Share of the way from the last picture's ellipsoid to the present one that a frame takes: a turn of the
-  /// levels, every fourth frame, is spread over the frames up to the next.
-  float follow = 0.3f;
-  float mergew = 2.5f, mergemode = 0;
+  int fading = 4;            ///< frames in which a particle fades out that merged into another
   float newborn = 0.15f;  ///< share of Ellipsoid::square with which a particle without a last picture begins
 };
 
@@ -218,17 +215,8 @@ SIM_FN Ellipsoid blended(const SurfaceRules& rules, const Ellipsoid& target, Ell
   const float furthest = 2 * at_least(r, last_r);
   if (!(last_r > 0) || dot(way, way) > furthest * furthest)
     return {target.centre, rules.newborn * target.square, r};
-  if (r > 1.1f * last_r) {
-    // Of two merged particles one remains, half way between them: it begins where both were.
-    if (rules.mergemode == 0) { last.square.add(rules.mergew, way);
-    last.centre = target.centre; }
-    if (rules.mergemode == 1) { return target; }
-    if (rules.mergemode == 2) { last.square.add(rules.mergew, way); last.square = (1.0f) * last.square + 0.5f * target.square; 
-    last.centre = target.centre; }
-  }
   return {last.centre + follow * (target.centre - last.centre),
-          follow * target.square + (1 - follow) * last.square,
-          follow * r + (1 - follow) * last.radius};
+          follow * target.square + (1 - follow) * last.square, follow * r + (1 - follow) * last.radius};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,4 +1,5 @@
 #include "libsim/surface/ellipsoids.hpp"
+#include <algorithm>
 #include <cstdlib>
 
 namespace sim::SIM_BACKEND {
@@ -44,15 +45,13 @@ struct NearWalls {
 
 /// The drawn ellipsoids of two frames, by id.
 struct Memory {
-  const int* id = nullptr;  ///< nullptr: no memory
-  int most_ids = 0;
+  const int* id = nullptr;            ///< nullptr: no memory
   const Vec4* last_centre = nullptr;  ///< nullptr: no last picture
   const RenderShape* last_shape = nullptr;
-  const float* last_radius = nullptr;
+  const Vec4* last_motion = nullptr;
   Vec4* centre = nullptr;
   RenderShape* shape = nullptr;
-  float* radius = nullptr;  ///< as drawn; centre[k].w is the particle's own
-  float frames = 0;  ///< since the last picture
+  Vec4* motion = nullptr;
   float follow = 1;
 
   /// Blends the ellipsoid of particle i with that of the last picture, and stores it for the next one.
@@ -60,16 +59,52 @@ struct Memory {
                          Ellipsoid drawn) const {
     if (!id) return drawn;
     const int k = id[i];
-    if (k < 0 || k >= most_ids) return drawn;
     if (last_centre) {
       const Vec4 last = last_centre[k];
-      const Ellipsoid then{xyz(last) + frames * way - place, unpacked(last_shape[k]), last_radius[k]};
+      const Ellipsoid then{xyz(last) + way - place, unpacked(last_shape[k]), last_motion[k].w};
       drawn = blended(rules, drawn, then, last.w, r, follow);
     }
     centre[k] = with_w(place + drawn.centre, r);
     shape[k] = packed(drawn.square);
-    radius[k] = drawn.radius;
+    motion[k] = with_w(way, drawn.radius);
     return drawn;
+  }
+};
+
+/// Marks the ids of particles that have gone and still fade out.
+struct MarkFading {
+  Memory memory;
+  int frames;
+  std::uint8_t* fades;
+  SIM_FN void operator()(int k) const {
+    const float last = memory.last_centre[k].w;
+    fades[k] = memory.centre[k].w == 0 && (last > 0 || (last < 0 && last > 1 - static_cast<float>(frames)));
+  }
+};
+
+/// Draws the particles that fade out behind the n others, in the order of their ids: they move on and shrink.
+struct DrawFading {
+  Memory memory;
+  int frames;
+  const std::uint8_t* fades;
+  const int* count;
+  int n;
+  Vec4* centre;
+  RenderShape* shape;
+  SIM_FN void operator()(int k) const {
+    if (!fades[k]) return;
+    const Vec4 last = memory.last_centre[k];
+    const Vec4 motion = memory.last_motion[k];
+    const float age = last.w > 0 ? 1 : 1 - last.w;
+    const auto whole = static_cast<float>(frames);
+    const Vec3 place = xyz(last) + xyz(motion);
+    const RenderShape left = packed(((whole - age) / (whole - age + 1)) * unpacked(memory.last_shape[k]));
+    memory.centre[k] = with_w(place, -age);
+    memory.shape[k] = left;
+    memory.motion[k] = motion;
+    const int at = n + count[k] - 1;
+    centre[at] = with_w(place, motion.w);
+    shape[at] = left;
   }
 };
 
@@ -145,12 +180,12 @@ void Ellipsoids::begin_frame(const SurfaceParticles& from) {
   const auto ids = static_cast<std::size_t>(from.most_ids);
   now_.centre.resize(ids);
   now_.shape.resize(ids);
-  now_.radius.resize(ids);
+  now_.motion.resize(ids);
   now_.centre.zero();
 }
 
-void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape) {
-  if (from.n == 0) return;
+int Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape) {
+  if (from.n == 0) return 0;
   if (from.n > sorted_.capacity()) {
     sorted_.allocate(
         columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::Predicted), from.n,
@@ -168,25 +203,22 @@ void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape
   if (const char* e = getenv("S_" #x)) rules.x = static_cast<float>(atof(e));
   ENV(smoothing)
   ENV(flat_mean)
-  ENV(volume_radius) ENV(least_axis) ENV(most_axis) ENV(widening) ENV(follow) ENV(newborn) ENV(mergew) ENV(mergemode) ENV(reach)
-      Domain mirrors = from.tank;
+  ENV(volume_radius)
+  ENV(least_axis) ENV(most_axis) ENV(widening) ENV(newborn) ENV(reach) Domain mirrors = from.tank;
   if (!from.lid) mirrors.high.y = 1e30f;
   Memory memory;
   if (from.id) {
     begin_frame(from);
-    const int frames = from.frame - before_.frame;
-    const bool known = before_.frame >= 0 && frames > 0 && frames <= 4 &&
+    const bool known = before_.frame >= 0 && from.frame == before_.frame + 1 &&
                        before_.centre.size() == static_cast<std::size_t>(from.most_ids);
     memory = {.id = from.id,
-              .most_ids = from.most_ids,
               .last_centre = known ? before_.centre.data() : nullptr,
               .last_shape = before_.shape.data(),
-              .last_radius = before_.radius.data(),
+              .last_motion = before_.motion.data(),
               .centre = now_.centre.data(),
               .shape = now_.shape.data(),
-              .radius = now_.radius.data(),
-              .frames = static_cast<float>(frames),
-              .follow = 1 - powf(1 - rules.follow, static_cast<float>(frames))};
+              .motion = now_.motion.data(),
+              .follow = from.follow};
   }
   for_each_team("ellipsoids", from.n,
                 ShapeOne{.rules = rules,
@@ -200,18 +232,27 @@ void Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape
                          .tank = mirrors,
                          .centre = centre,
                          .shape = shape});
+  if (!memory.last_centre) return from.n;
+  const int ids = from.most_ids;
+  fades_.resize(static_cast<std::size_t>(ids));
+  for_each("mark fading", ids, MarkFading{memory, rules.fading, fades_.data()});
+  scanner_.inclusive_count(fades_.data(), ids, count_);
+  for_each("draw fading", ids,
+           DrawFading{memory, rules.fading, fades_.data(), count_.data(), from.n, centre, shape});
+  return from.n + last_of(count_);
 }
 
 void Ellipsoids::read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
                       std::vector<RenderShape>& shapes) {
   static_assert(sizeof(RenderParticle) == sizeof(Vec4));
-  const auto n = static_cast<std::size_t>(from.n);
-  centre_.resize(n);
-  shape_.resize(n);
-  compute(from, centre_.data(), shape_.data());
+  const auto room = static_cast<std::size_t>(std::max(from.n, from.most_ids));
+  centre_.resize(room);
+  shape_.resize(room);
+  const auto n = static_cast<std::size_t>(compute(from, centre_.data(), shape_.data()));
   particles.resize(n);
   copy_to_host(particles.data(), centre_.data(), n * sizeof(Vec4));
-  shapes = shape_.to_host();
+  shapes.resize(n);
+  copy_to_host(shapes.data(), shape_.data(), n * sizeof(RenderShape));
 }
 
 }  // namespace sim::SIM_BACKEND

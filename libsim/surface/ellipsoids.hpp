@@ -45,21 +45,27 @@ struct SurfaceParticles {
   int n;
   const Vec4* position;  ///< m, and the support h, m; h = 0: an unused slot
   const Vec4* velocity;  ///< m/s; nullptr: unknown
-  const int* id;         ///< ids, which last from frame to frame; nullptr: unknown, nothing is blended
-  int most_ids;          ///< other ids have no memory
-  int frame;             ///< number of the frame
-  float frame_s;         ///< duration of a frame, s
-  float support;         ///< a support between the finest and the coarsest of the water, m
-  Domain tank;           ///< its walls and floor, and a lid, mirror the water
+  /// Ids, which last from frame to frame; nullptr: unknown, or no particle splits or merges. Without ids the
+  /// ellipsoids are those of the present water.
+  const int* id;
+  int most_ids;  ///< every id is below
+  int frame;     ///< number of the frame
+  /// Share of the way from the last frame's ellipsoids to those of the present water, (0, 1].
+  float follow;
+  float frame_s;  ///< duration of a frame, s
+  float support;  ///< a support between the finest and the coarsest of the water, m
+  Domain tank;    ///< its walls and floor, and a lid, mirror the water
   bool lid;
 };
 
-/// Ellipsoids follow the present water gradually (SurfaceRules::follow) if the last picture was at most four
-/// frames ago, and at once after a longer break or a jump in time.
+/// With ids, ellipsoids follow the present water gradually if the last picture was of the frame before, and
+/// at once otherwise.
 class Ellipsoids {
  public:
   /// Writes each particle's drawn centre and radius r = h / 4 to centre[i], and its ellipsoid to shape[i].
-  void compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
+  /// Behind them follow those that fade out: particles that merged into others. Returns the number of both,
+  /// at most from.n or, with memory, from.most_ids.
+  int compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
 
   /// The same, copied to the host.
   void read(const SurfaceParticles& from, std::vector<RenderParticle>& particles,
@@ -67,16 +73,17 @@ class Ellipsoids {
 
   template <class Archive>
   void keep(Archive& archive) {
-    for (Drawn* one : {&before_, &now_}) archive(one->frame, one->centre, one->shape, one->radius);
+    for (Drawn* one : {&before_, &now_}) archive(one->frame, one->centre, one->shape, one->motion);
   }
 
  private:
-  /// The ellipsoids of a frame, by id; radius 0: no such particle.
+  /// The ellipsoids of a frame, by id, with the particle's own radius. Radius 0: no such particle; -k: a
+  /// particle that fades out, in its k-th frame.
   struct Drawn {
     int frame = -1;
     Array<Vec4> centre;
     Array<RenderShape> shape;
-    Array<float> radius;
+    Array<Vec4> motion;  ///< way in a frame, m, and the drawn radius
   };
   void begin_frame(const SurfaceParticles& from);
 
@@ -85,6 +92,9 @@ class Ellipsoids {
   Array<RenderShape> shape_;
   Particles sorted_;  ///< copies of the positions, sorted by cell; the ids are the indices in `from`
   Grid grid_;
+  Scanner scanner_;
+  Array<std::uint8_t> fades_;
+  Array<int> count_;
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -45,6 +45,7 @@ void HostSurface::shape(std::vector<RenderParticle>& particles, std::vector<Rend
                      .id = nullptr,
                      .most_ids = 0,
                      .frame = 0,
+                     .follow = 1,
                      .frame_s = 0,
                      .support = std::min(1.26F * finest, coarsest),
                      .tank = s.tank,
