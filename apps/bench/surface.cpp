@@ -23,7 +23,7 @@ struct SurfaceOptions {
   std::string surface = "both";
   std::string n_star = "2k", backend = "auto";
   std::string csv, json, pictures;
-  int frames = 60, timed_frames = 10;
+  int warm_up = 24, frames = 60, timed_frames = 10;
   base::PictureSize size{640, 360};
 };
 
@@ -85,8 +85,8 @@ void add_run_rows(const SurfaceOptions& options, const std::vector<sim::Surface>
                   std::vector<SurfaceRow>& rows) {
   const sim::Scene dam = sim::read_scene(base::find_input("data/scenes/single_dam.toml"));
   for (const sim::Scene& scene : {dam, still_pool()}) {
-    const auto popping =
-        measure::measure_popping(scene, ours(options), options.frames, options.size, surfaces);
+    const auto popping = measure::measure_popping(scene, ours(options), options.warm_up, options.frames,
+                                                  options.size, surfaces);
     SurfaceRow ratio{"popping", scene.name, "Ours", 2, {}},
         change{"change_between", scene.name, "Ours", 3, {}};
     for (const measure::Popping& one : popping) {
@@ -130,9 +130,13 @@ base::Json json_of(const std::vector<SurfaceRow>& rows, const std::vector<sim::S
     for (std::size_t k = 0; k < surfaces.size(); ++k) one[sim::surface_name(surfaces[k])] = row.values[k];
     all.push_back(one);
   }
-  return {{"n_star", options.n_star},        {"frames", options.frames},
-          {"width_px", options.size.width},  {"height_px", options.size.height},
-          {"opengl", sim::gl_description()}, {"rows", all}};
+  return {{"n_star", options.n_star},
+          {"frames", options.frames},
+          {"warm_up", options.warm_up},
+          {"width_px", options.size.width},
+          {"height_px", options.size.height},
+          {"opengl", sim::gl_description()},
+          {"rows", all}};
 }
 
 void run_surface(const SurfaceOptions& options) {
@@ -175,6 +179,7 @@ void add_surface_command(CLI::App& app) {
   add_n_star(*command, options->n_star);
   add_backend(*command, options->backend);
   add_count(*command, "--frames", options->frames, 0, 100000, "Frames of popping; 0 = shapes only");
+  add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Frames before them that do not count");
   add_count(*command, "--timed-frames", options->timed_frames, 1, 100000, "Frames of the times");
   add_size(*command, options->size, "Picture of one eye in the runs, px");
   command->add_option("--pictures", options->pictures, "Folder for the shapes' pictures; made when missing")

@@ -61,16 +61,16 @@ double frame_dt_of(const sim::Scene& scene, const sim::SimulationOptions& option
 }  // namespace
 
 std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::SimulationOptions& options,
-                                     int frames, const base::PictureSize& size,
+                                     int warm_up, int frames, const base::PictureSize& size,
                                      const std::vector<sim::Surface>& surfaces) {
   const auto fluid = make_settled(scene, options);
   const auto drawn = renderers(scene, surfaces, size.width, size.height);
   const sim::View view = sim::make_view(scene.view, size.width, size.height);
   std::vector<Popping> out(surfaces.size());
-  base::Progress progress("frames", static_cast<std::size_t>(frames));
-  for (int frame = 0; frame <= frames; ++frame) {
+  base::Progress progress("frames", static_cast<std::size_t>(warm_up + frames));
+  for (int frame = -warm_up; frame <= frames; ++frame) {
     const auto before = fluid->account().particles_by_level;
-    if (frame > 0) {
+    if (frame > -warm_up) {
       look_at_gaze(drawn.back()->picture, *fluid, scene, view, frame_dt_of(scene, options));
       fluid->step_frame();
     }
@@ -83,11 +83,10 @@ std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::Simulat
         const double change = change_between(one.last, now);
         (turned ? out[k].turning : out[k].other) += change;
         ++(turned ? out[k].turns : out[k].others);
-        if (getenv("TRACE")) fprintf(stderr, "\nT %s %d %d %d %.4f n %ld\n", scene.name.c_str(), frame, (int)k, turned, change, (long)fluid->particle_count());
       }
       one.last = std::move(now);
     }
-    progress.update(static_cast<std::size_t>(frame));
+    progress.update(static_cast<std::size_t>(warm_up + frame));
   }
   for (Popping& one : out) {
     one.turning /= one.turns;

@@ -19,9 +19,10 @@ struct Popping {
 };
 
 /// Steps the fluid and draws each frame by each surface. The method looks at the pictures of the last
-/// surface, and at the scene's gaze. One result per surface, all of the same states. Needs a current context.
-std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::SimulationOptions& fluid, int frames,
-                                     const base::PictureSize& size,
+/// surface, and at the scene's gaze. The first `warm_up` frames do not count: in them a method with levels
+/// finds its levels. One result per surface, all of the same states. Needs a current context.
+std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::SimulationOptions& fluid,
+                                     int warm_up, int frames, const base::PictureSize& size,
                                      const std::vector<sim::Surface>& surfaces);
 
 /// Medians over the frames, ms.

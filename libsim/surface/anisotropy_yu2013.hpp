@@ -212,7 +212,7 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
 SIM_FN Ellipsoid blended(const SurfaceRules& rules, const Ellipsoid& target, Ellipsoid last, float last_r,
                          float r, float follow) {
   const Vec3 way = target.centre - last.centre;
-  const float furthest = 2 * at_least(r, last_r);
+  const float furthest = 4 * at_least(r, last_r);
   if (!(last_r > 0) || dot(way, way) > furthest * furthest)
     return {target.centre, rules.newborn * target.square, r};
   return {last.centre + follow * (target.centre - last.centre),

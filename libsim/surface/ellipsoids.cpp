@@ -1,6 +1,5 @@
 #include "libsim/surface/ellipsoids.hpp"
 #include <algorithm>
-#include <cstdlib>
 
 namespace sim::SIM_BACKEND {
 
@@ -198,13 +197,8 @@ int Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape*
                           to.level.data(), to.id.data()});
   // Cells as wide as a support: most search radii reach into the adjacent cells only.
   grid_.build(sorted_, 1, from.tank, from.support);
-  SurfaceRules rules;
-#define ENV(x) \
-  if (const char* e = getenv("S_" #x)) rules.x = static_cast<float>(atof(e));
-  ENV(smoothing)
-  ENV(flat_mean)
-  ENV(volume_radius)
-  ENV(least_axis) ENV(most_axis) ENV(widening) ENV(newborn) ENV(reach) Domain mirrors = from.tank;
+  const SurfaceRules rules;
+  Domain mirrors = from.tank;
   if (!from.lid) mirrors.high.y = 1e30f;
   Memory memory;
   if (from.id) {
