@@ -98,7 +98,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
   }
   return {std::make_unique<measure::RenderTimer>(std::move(*context),
                                                  sim::acting_scene(scene, sim::parse_method(options.method)),
-                                                 size, options.views),
+                                                 size, options.views, sim::parse_surface(options.surface)),
           ""};
 }
 

@@ -30,6 +30,7 @@ struct FrameOptions {
   bool peers = false;
   base::PictureSize size{1280, 720};
   int views = 1;
+  std::string surface = "ellipsoids";  ///< how the particles are drawn: ellipsoids or spheres
 };
 
 /// Runs the frames and returns all measured values.

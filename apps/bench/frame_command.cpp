@@ -137,9 +137,9 @@ base::Json run_peers(FrameOptions options) {
 
 /// Refuses all options but `allowed` beside --setting, which fixes all numbers of the solver.
 void refuse_beside_setting(const CLI::App& command) {
-  constexpr std::array allowed{"scene",     "--setting",   "--backend", "--frames",
-                               "--warm-up", "--no-render", "--passes",  "--look",
-                               "--size",    "--views",     "--json",    "--measure-every"};
+  constexpr std::array allowed{"scene",       "--setting", "--backend",      "--frames", "--warm-up",
+                               "--no-render", "--passes",  "--look",         "--size",   "--views",
+                               "--surface",   "--json",    "--measure-every"};
   for (const CLI::Option* option : command.get_options()) {
     const auto is = [&](const char* name) { return option->check_name(name); };
     if (option->count() > 0 && std::none_of(allowed.begin(), allowed.end(), is))
@@ -212,6 +212,9 @@ void add_frame_command(CLI::App& app) {
       ->excludes(no_render);
   add_size(*command, options->size, "Picture of one view, px");
   add_count(*command, "--views", options->views, 1, 2, "1, or 2 eyes side by side");
+  command->add_option("--surface", options->surface, "Particles are drawn as ellipsoids or spheres")
+      ->check(CLI::IsMember({"ellipsoids", "spheres"}))
+      ->capture_default_str();
   command->add_option("--json", options->json, "Also write the figures to this file")->check(output_file());
   command->add_flag("--peers", options->peers,
                     "Run PeersDam with 32,768 particles, HiRes and steps of 0.005 s, without pictures, and "

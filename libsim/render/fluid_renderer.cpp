@@ -213,11 +213,12 @@ std::vector<PassTime> FluidRenderer::times() const { return state_->timer.times(
 
 GlPicture FluidRenderer::picture(std::size_t view) const {
   const ViewTargets& t = state_->drawn(view);
-  return {t.width, t.height, t.view, state_->options.radius_scale, t.depth.ref(), t.normals.ref()};
+  return {t.width, t.height, t.view, state_->drawn_radius_scale(), t.depth.ref(), t.normals.ref()};
 }
 
 void FluidRenderer::read_picture(GBuffer& out, std::size_t view) const {
   state_->drawn(view).read_picture(state_->options, out);
+  out.radius_scale = state_->drawn_radius_scale();
 }
 
 std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
@@ -237,7 +238,9 @@ FloorMap FluidRenderer::read_floor() const {
 }
 
 GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
-  return state_->drawn(view).read_gbuffer(state_->options);
+  GBuffer out = state_->drawn(view).read_gbuffer(state_->options);
+  out.radius_scale = state_->drawn_radius_scale();
+  return out;
 }
 
 }  // namespace sim

@@ -73,6 +73,8 @@ struct FluidRenderer::State {
 
   /// The buffers of a view of the last draw, ready for reading.
   const ViewTargets& drawn(std::size_t view) const;
+  /// GBuffer::radius_scale of the last draw. Ellipsoids end a radius before their particle's place.
+  float drawn_radius_scale() const { return shapes_ ? 1 : options.radius_scale; }
   void place_obstacles(const std::vector<BodyMotion>& motions);
   void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer,
                   const ParticleBuffer* foam_from);

@@ -19,6 +19,18 @@ namespace {
 /// has a mean compression of 0.1 to 0.3 %.
 constexpr double calm_compression = 0.005;
 
+/// Lets `write` fill GL buffers with 16 bytes for each of n particles; false if they cannot be shared.
+template <class Write>
+bool share(GlSharing& by, const std::vector<GlBufferRef>& buffers, int n, Write write) {
+  bool shared = true;
+  for (const GlBufferRef& one : buffers)
+    shared = shared && one.bytes >= static_cast<std::size_t>(n) * sizeof(Vec4);
+  shared = shared && by.accept(buffers);
+  if (shared) write(by.map());
+  by.unmap();
+  return shared;
+}
+
 class FluidSimulation final : public Simulation {
  public:
   FluidSimulation(const Scene& scene, const SimulationOptions& options)
@@ -116,10 +128,9 @@ class FluidSimulation final : public Simulation {
   }
 
   void force_targets(const TargetRegion& region) override {
-    if (!options_.forced_targets) {
+    if (!options_.forced_targets)
       throw base::Error("forced targets", "were not set when the run was made",
                         "set SimulationOptions::forced_targets");
-    }
     state_.levels.forced = sphere_of(region);
   }
 
@@ -128,12 +139,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void change(const LiveNumbers& to) override {
-    if (!(to.alpha >= 0 && to.alpha <= 1))
-      throw base::Error("alpha = " + std::to_string(to.alpha), "is out of range", "use a weight from 0 to 1");
-    if (to.iterations < 1 || to.iterations > LiveNumbers::most_iterations) {
-      throw base::Error("iterations = " + std::to_string(to.iterations), "is out of range",
-                        "use 1 to " + std::to_string(LiveNumbers::most_iterations) + " per substep");
-    }
+    check_live(to);
     state_.saliency.readings.alpha = to.alpha;
     state_.parameters.iterations = to.iterations;
   }
@@ -176,23 +182,14 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  PartTimes part_times() const override {
-    const PartClock& clock = state_.clock;
-    return {.saliency_ms = clock.milliseconds(Part::Saliency),
-            .levels_ms = clock.milliseconds(Part::Levels),
-            .activation_ms = clock.milliseconds(Part::Activation),
-            .solve_ms = clock.milliseconds(Part::Solve)};
-  }
+  PartTimes part_times() const override { return times_of(state_.clock); }
   std::int64_t particle_count() const override { return state_.particles.size(); }
   std::int64_t particle_capacity() const override { return state_.particles.capacity(); }
   double spacing_m() const override { return resolution_.spacing_m; }
   void profile_launches(bool on) override { SIM_BACKEND::profile_launches(on); }
   std::vector<LaunchTime> launch_times() const override { return SIM_BACKEND::launch_times(); }
   void synchronize() override { SIM_BACKEND::synchronize(); }
-  std::size_t particle_bytes() const override {
-    return state_.particles.bytes() + state_.jets.columns.bytes() + state_.jets.exchange.bytes() +
-           state_.outflow.bytes() + state_.saliency.bytes() + state_.activation.bytes() + state_.foam.bytes();
-  }
+  std::size_t particle_bytes() const override { return bytes_of(state_); }
 
   void read_particles(std::vector<RenderParticle>& out) const override {
     render_particles_of(state_.particles, out);
@@ -201,19 +198,11 @@ class FluidSimulation final : public Simulation {
   std::int64_t foam_capacity() const override { return state_.foam.capacity(); }
   void read_foam(std::vector<RenderParticle>& out) const override { render_foam_of(state_, out); }
   bool copy_foam_to_gl(const GlBufferRef& buffer) override {
-    const auto room = static_cast<std::size_t>(state_.foam.capacity());
-    const bool shared = room > 0 && buffer.bytes >= room * sizeof(Vec4) && foam_gl_.accept({buffer});
-    if (shared) pack_foam(state_, static_cast<Vec4*>(foam_gl_.map()[0]));
-    foam_gl_.unmap();
-    return shared;
+    const auto pack = [this](const auto& memory) { pack_foam(state_, static_cast<Vec4*>(memory[0])); };
+    return state_.foam.capacity() > 0 && share(foam_gl_, {buffer}, state_.foam.capacity(), pack);
   }
 
-  std::vector<float> radii_m() const override {
-    std::vector<float> out;
-    for (int level = levels_.first; level <= levels_.second; ++level)
-      out.push_back(radius_per_support * state_.supports.h[level]);
-    return out;
-  }
+  std::vector<float> radii_m() const override { return radii_of(state_.supports, levels_); }
 
   void read_saliency(std::vector<ParticleSaliency>& out) const override {
     out.clear();
@@ -227,7 +216,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
-    SaliencyState observer = make_observer();
+    SaliencyState observer = observer_of(options_.readings, options_.levels);
     if (!observer.input.look(looks)) {
       throw base::Error("measure_saliency", "a picture lies in GL buffers that this back end cannot read",
                         "copy the picture to the host, and give the copy");
@@ -240,7 +229,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) override {
-    SaliencyState observer = make_observer();
+    SaliencyState observer = observer_of(options_.readings, options_.levels);
     observer.input.look(looks, false);
     Array<float> s;
     Array<std::uint8_t> target;
@@ -249,9 +238,7 @@ class FluidSimulation final : public Simulation {
   }
 
   std::vector<int> read_ids() const override { return state_.particles.all().id.to_host(); }
-
   std::vector<ParticleState> read_state() const override { return states_of(state_.particles); }
-
   void save_state(const std::filesystem::path& path) override {
     StateWriter out;
     int n = state_.particles.size();
@@ -262,11 +249,10 @@ class FluidSimulation final : public Simulation {
   }
 
   bool copy_to_gl(const GlBufferRef& buffer) override {
-    const int n = state_.particles.size();
-    const bool room = buffer.bytes >= static_cast<std::size_t>(n) * sizeof(Vec4);
-    const bool shared = room && gl_.accept({buffer});
-    if (shared) pack_for_drawing(state_.particles, static_cast<Vec4*>(gl_.map()[0]));
-    gl_.unmap();
+    const auto pack = [this](const auto& memory) {
+      pack_for_drawing(state_.particles, static_cast<Vec4*>(memory[0]));
+    };
+    const bool shared = share(gl_, {buffer}, state_.particles.size(), pack);
     state_.saliency.input.give_back();
     return shared;
   }
@@ -277,14 +263,11 @@ class FluidSimulation final : public Simulation {
 
   std::optional<std::int64_t> copy_surface_to_gl(const GlBufferRef& particles,
                                                  const GlBufferRef& shapes) override {
-    const std::size_t room = static_cast<std::size_t>(particle_capacity()) * sizeof(Vec4);
     std::optional<std::int64_t> written;
-    if (particles.bytes >= room && shapes.bytes >= room && gl_.accept({particles, shapes})) {
-      const auto& memory = gl_.map();
+    share(gl_, {particles, shapes}, state_.particles.capacity(), [&](const auto& memory) {
       written = surface_.compute(surface_input(), static_cast<Vec4*>(memory[0]),
                                  static_cast<RenderShape*>(memory[1]));
-    }
-    gl_.unmap();
+    });
     state_.saliency.input.give_back();
     return written;
   }
@@ -304,13 +287,6 @@ class FluidSimulation final : public Simulation {
     return surface_particles_of(state_, scene_.lid, frame_, changes_levels_);
   }
   bool is_of_one_level() const { return !changes_levels_ && levels_.first == levels_.second; }
-
-  SaliencyState make_observer() const {
-    SaliencyState out;
-    out.readings = options_.readings;
-    out.levels = options_.levels;
-    return out;
-  }
 
   /// Report of temporal acceleration (ViP-Fluid Eq. 11) in the frame that ends; none in a run without it.
   std::optional<TemporalReport> went_by() const {

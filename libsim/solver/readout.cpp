@@ -4,6 +4,7 @@
 
 #include "libsim/solver/account_keeper.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
+#include "stats/base/error.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -83,6 +84,42 @@ LevelEvents events_of(const LevelCounts& counts) {
   return {counts.splits,         counts.born,          counts.merges,
           counts.split_deferred, counts.split_at_wall, counts.split_no_room,
           counts.merge_overlap,  counts.merge_step,    1e-6 * static_cast<double>(counts.energy_lost_uj)};
+}
+
+SaliencyState observer_of(const Readings& readings, int levels) {
+  SaliencyState out;
+  out.readings = readings;
+  out.levels = levels;
+  return out;
+}
+
+PartTimes times_of(const PartClock& clock) {
+  return {.saliency_ms = clock.milliseconds(Part::Saliency),
+          .levels_ms = clock.milliseconds(Part::Levels),
+          .activation_ms = clock.milliseconds(Part::Activation),
+          .solve_ms = clock.milliseconds(Part::Solve)};
+}
+
+std::size_t bytes_of(const FluidState& state) {
+  return state.particles.bytes() + state.jets.columns.bytes() + state.jets.exchange.bytes() +
+         state.outflow.bytes() + state.saliency.bytes() + state.activation.bytes() + state.foam.bytes();
+}
+
+std::vector<float> radii_of(const LevelSupports& supports, std::pair<int, int> levels) {
+  std::vector<float> out;
+  for (int level = levels.first; level <= levels.second; ++level)
+    out.push_back(radius_per_support * supports.h[level]);
+  return out;
+}
+
+void check_live(const LiveNumbers& numbers) {
+  if (!(numbers.alpha >= 0 && numbers.alpha <= 1))
+    throw base::Error("alpha = " + std::to_string(numbers.alpha), "is out of range",
+                      "use a weight from 0 to 1");
+  if (numbers.iterations < 1 || numbers.iterations > LiveNumbers::most_iterations) {
+    throw base::Error("iterations = " + std::to_string(numbers.iterations), "is out of range",
+                      "use 1 to " + std::to_string(LiveNumbers::most_iterations) + " per substep");
+  }
 }
 
 FrameReport report_of(const FluidState& state) {

@@ -2,6 +2,7 @@
 /// Particle data that programs read, on the host.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libsim/simulation.hpp"
@@ -23,6 +24,15 @@ void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>&
 HeatReport heat_of(const FluidState& state);
 
 LevelEvents events_of(const LevelCounts& counts);
+/// A state of saliency for a measurement beside the run.
+SaliencyState observer_of(const Readings& readings, int levels);
+PartTimes times_of(const PartClock& clock);
+/// Simulation::particle_bytes.
+std::size_t bytes_of(const FluidState& state);
+/// The radii of the levels from the first to the second, m.
+std::vector<float> radii_of(const LevelSupports& supports, std::pair<int, int> levels);
+/// base::Error if a number is out of range.
+void check_live(const LiveNumbers& numbers);
 
 /// The report of the state. The caller sets its frame, time, substeps, temporal acceleration, splits and
 /// merges, and start.

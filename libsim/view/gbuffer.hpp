@@ -21,9 +21,9 @@ struct GBuffer {
   int width = 0, height = 0;
   View view;  ///< camera of this picture
 
-  /// Splatted radius divided by the particle's radius. In Eq. 8 of ViP-Fluid, particle i with the eye depth
-  /// z_i > 0 and the radius r_i at pixel p lies max(0, z_i - depth[p] - radius_scale * r_i) m behind the
-  /// water's surface.
+  /// Distance of the drawn surface from a particle's place, divided by the particle's radius: that of
+  /// splatted spheres; 1 for ellipsoids. In Eq. 8 of ViP-Fluid, particle i with the eye depth z_i > 0 and the
+  /// radius r_i at pixel p lies max(0, z_i - depth[p] - radius_scale * r_i) m behind the water's surface.
   float radius_scale = 1;
 
   std::vector<float> depth;           ///< front of the splatted spheres, not smoothed (Eq. 8)
