@@ -37,6 +37,7 @@ docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|s/32k/6
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/results.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2/|it needs a GPU|
+docs/results.md|vip-bench surface|s/surface/surface --n-star 64 --warm-up 4 --frames 8 --timed-frames 1 --size 96x64/|it takes minutes on two cores|
 docs/results.md|vip-bench stability --case S9,S11,S12|s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|
 docs/results.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
 docs/results.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|

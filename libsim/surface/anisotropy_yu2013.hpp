@@ -153,7 +153,8 @@ SIM_FN Symmetric3 drop_of(const SurfaceRules& rules, float r, Vec3 way) {
   const float stretch = at_most(1 + 0.25f * length_m / r, rules.most_stretch);
   const float across = a * a / stretch;
   Symmetric3 out{across, across, across, 0, 0, 0};
-  if (length_m > 0) out.add((a * a * stretch * stretch - across) / (length_m * length_m), way);
+  if (length_m > 0 && length_m < 1e6f)
+    out.add((a * a * stretch * stretch - across) / (length_m * length_m), way);
   return out;
 }
 
@@ -165,9 +166,11 @@ SIM_FN float smooth_rise(float from, float to, float x) {
 /// Half axes, longest first, of the ellipsoid with these variances along its axes: in proportion to their
 /// roots, with the volume of a sphere of rules.volume_radius, and within the bounds of the rules.
 SIM_FN void half_axes(const SurfaceRules& rules, const float (&variance)[3], float (&axis)[3]) {
-  const float least = 0.04f * variance[0];
-  const float b = sqrtf(at_least(variance[1], least) / variance[0]);
-  const float c = sqrtf(at_least(variance[2], least) / variance[0]);
+  // All particles may lie at one place: the variances are then 0.
+  const float most = at_least(variance[0], 1e-6f);
+  const float least = 0.04f * most;
+  const float b = sqrtf(at_most(at_least(variance[1], least), most) / most);
+  const float c = sqrtf(at_most(at_least(variance[2], least), most) / most);
   const float v = rules.volume_radius;
   const float one = v / cbrtf(b * c);
   axis[2] = at_least(c * one, rules.least_axis);
@@ -213,7 +216,7 @@ SIM_FN Ellipsoid blended(const SurfaceRules& rules, const Ellipsoid& target, Ell
                          float r, float follow) {
   const Vec3 way = target.centre - last.centre;
   const float furthest = 4 * at_least(r, last_r);
-  if (!(last_r > 0) || dot(way, way) > furthest * furthest)
+  if (!(last_r > 0) || !(dot(way, way) <= furthest * furthest))
     return {target.centre, rules.newborn * target.square, r};
   return {last.centre + follow * (target.centre - last.centre),
           follow * target.square + (1 - follow) * last.square, follow * r + (1 - follow) * last.radius};

@@ -1,6 +1,7 @@
 /// The ellipsoids by which particles are drawn, against closed forms.
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "libsim/surface/ellipsoids.hpp"
@@ -177,6 +178,20 @@ SIM_TEST(Ellipsoids, UnusedSlotsStayUnused) {
   EXPECT_EQ(drawn.centre.back().w, 0);
   EXPECT_EQ(drawn.centre[0].w, r);
   for (std::size_t i = 0; i + 1 < places.size(); ++i) ASSERT_TRUE(all_finite(xyz(drawn.centre[i])));
+}
+
+SIM_TEST(Ellipsoids, AreFiniteForParticlesAtOnePlaceAndForAnySpeed) {
+  Ellipsoids by;
+  Water water;
+  const float infinite = std::numeric_limits<float>::infinity();
+  std::vector<Vec4> places(20, Vec4{1, 1, 1, h}), speeds(20, Vec4{0, 0, 0, 0});
+  places.push_back({3, 3, 3, h});
+  speeds.push_back({infinite, 0, 0, 0});
+  const Drawn drawn = water.draw(by, places, {}, 0, 1, speeds);
+  for (const Symmetric3& s : drawn.square) {
+    for (const float value : {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz}) ASSERT_TRUE(std::isfinite(value));
+    ASSERT_GT(s.xx, 0);
+  }
 }
 
 SIM_TEST(Ellipsoids, FollowInEqualStepsAndMergedParticlesFadeOut) {
