@@ -70,7 +70,7 @@ TEST_F(SurfaceE2e, OneSurfaceHasOneColumn) {
   const auto table = rows("s.csv");
   EXPECT_EQ(table.size(), 50u);
   EXPECT_FALSE(table.front().contains("ellipsoids"));
-  EXPECT_EQ(this->table("surface --surface blobs").exit_code, 1);
+  EXPECT_EQ(this->table("surface --surface blobs").exit_code, 2) << "an unknown word";
 }
 
 }  // namespace
