@@ -1,6 +1,8 @@
-// Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Writes sRGB.
+// Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Leaves linear light and the
+// nearness of what each pixel shows, from which edges.comp makes the picture.
 #include "view.glsl"
 #include "room.glsl"
+#include "shaded.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Nearness { float nearness[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
@@ -11,7 +13,8 @@ layout(std430, binding = 3) buffer Cover { uint cover[]; };
 #else
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 #endif
-layout(rgba8, binding = 0) writeonly uniform image2D picture;
+layout(std430, binding = 6) writeonly buffer Shaded { uvec2 shaded[]; };
+layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
@@ -26,7 +29,20 @@ float water_length(vec2 xy) {
   return mix(a, b, f.y) * thickness_rule.y;
 }
 
-vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m, float distance_m) {
+// Light that the surface mirrors towards the eye. A ray that is mirrored downwards meets water again: its light is
+// that of the direction mirrored once more, less what the water takes.
+vec3 mirrored_light(vec3 position, vec3 mirrored, float footprint_per_m, float distance_m) {
+#ifdef OBSTACLES
+  const Meeting met = meet_obstacles(position, mirrored);
+  if (met.at < never) return obstacle_light(met);
+#endif
+  const float kept = mirrored.y < 0.0 ? 0.5 : 1.0;
+  const vec3 up = normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
+  const vec3 light = surroundings(position, up, 2.0 * footprint_per_m, distance_m);
+  return kept * (light + vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0)));
+}
+
+vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float radius, float footprint_per_m, float distance_m) {
   const float facing = clamp(-dot(d, n), 0.0, 1.0);
   const float fresnel = reflected_share(facing) * smoothstep(0.0, thin_m, length_m);
   const vec3 inside = refract(d, n, into_water);
@@ -35,19 +51,42 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m,
   room = min(room, meet_obstacles(position, inside).at);
 #endif
   const float way = min(length_m, room);
-  const vec3 out_direction = normalize(mix(d, inside, clamp(length_m / max(room, 1e-3), 0.0, 1.0)));
-  const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way);
+  // Light leaves a pool through the tank's side or floor along `inside`, a sheet along d, and a drop turned once more.
+  const float to_wall = clamp(length_m / max(room, 1e-3), 0.0, 1.0);
+  const float as_drop = (1.0 - smoothstep(1.0, 2.5, 0.5 * length_m / radius)) * (1.0 - to_wall);
+  const vec3 out_direction = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
+  const float framed = smoothstep(0.5, 0.9, to_wall);
+  const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way, framed);
   const vec3 kept = exp(-absorption.rgb * way);
   const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * way)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
-  const vec3 mirrored = reflect(d, n);
-  vec3 reflection = seen_from_inside(position, mirrored, footprint_per_m, distance_m);
-  reflection += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
-  return mix(body, reflection, fresnel);
+  return mix(body, mirrored_light(position, reflect(d, n), footprint_per_m, distance_m), fresnel);
 }
 
-// Opacity of a fluid pixel, to soften the steps of the outline. It rises with the number of fluid pixels among the 8
-// neighbours: from 0.4 for a lone pixel, such as a distant droplet, to 1.
-float outline_cover(ivec2 pixel) {
+// The normal of a pixel for shading, in eye space. Beside a jump of depth the difference of neighbours says little, so
+// that the pixel takes the mean normal of its neighbours on the same layer. A normal never faces away from the eye.
+vec3 shading_normal(ivec2 pixel, int at, vec3 ray) {
+  const float centre = nearness[at], reach = 2.0 * normals[at].w * origin.w * centre * centre;
+  vec3 n = normals[at].xyz, sum = vec3(0.0);
+  int around = 0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const ivec2 near = clamp(pixel + ivec2(x, y), ivec2(0), size.xy - 1);
+      const int there = near.y * size.x + near.x;
+      if (nearness[there] == 0.0 || abs(nearness[there] - centre) > reach) continue;
+      sum += normals[there].xyz;
+      ++around;
+    }
+  }
+  if (around < 9) n = normalize(sum + 1e-3 * n);
+  const float away = dot(n, ray) / length(ray);
+  return normalize(n - max(away + 0.03, 0.0) * ray / length(ray));
+}
+
+// Opacity of a fluid pixel whose particle is smaller than the pixel: its share of the pixel, and more where its
+// neighbours hold water too.
+float small_cover(ivec2 pixel, float nearness_here, float radius) {
+  const float radius_px = radius * origin.w * nearness_here / rays.x;
+  if (radius_px > 0.6) return 1.0;
   int fluid = 0;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
@@ -55,41 +94,15 @@ float outline_cover(ivec2 pixel) {
       fluid += int(nearness[near.y * size.x + near.x] > 0.0);
     }
   }
-  return mix(0.4, 1.0, float(fluid - 1) / 8.0);
-}
-
-vec3 encode_srgb(vec3 c) {
-  const vec3 x = clamp(c, 0.0, 1.0);
-  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+  return max(3.1416 * radius_px * radius_px, float(fluid - 1) / 8.0);
 }
 
 #ifdef FOAM
 // Light from white foam under sun and sky.
 vec3 foam_light(vec3 n) { return vec3(0.42, 0.45, 0.48) + vec3(0.52, 0.50, 0.46) * max(dot(n, sun), 0.0); }
 
-// Share of a pixel that foam covers; x: foam on the water or in front of it, y: foam below its surface. Sets the
-// pixel's sums to 0 for the next picture.
-vec2 foam_cover(int at) {
-  const vec2 depths = vec2(cover[2 * at], cover[2 * at + 1]) / foam_units;
-  cover[2 * at] = cover[2 * at + 1] = 0u;
-  return 1.0 - exp(-depths);
-}
-
-uint scrambled(uint word) {
-  word = (word ^ (word >> 16)) * 0x45d9f3bu;
-  word = (word ^ (word >> 16)) * 0x45d9f3bu;
-  return word ^ (word >> 16);
-}
-
-// A normal of foamy water for saliency, which reads the G-buffer: the smooth normal mixed with a random one by the
-// share `covered`. The random normals are distributed like those over the visible disc of a sphere.
-vec3 rough_normal(vec3 smooth_one, int at, float covered) {
-  const uint first = scrambled(uint(at)), second = scrambled(first + 1u);
-  const float squared = float(first >> 8) / 16777216.0, angle = 6.2831853 * float(second >> 8) / 16777216.0;
-  const vec3 bubble = vec3(sqrt(squared) * vec2(cos(angle), sin(angle)), sqrt(1.0 - squared));
-  const vec3 mixed = mix(smooth_one, bubble, covered);
-  return length(mixed) > 0.1 ? normalize(mixed) : smooth_one;
-}
+// Share of a pixel that foam covers; x: foam on the water or in front of it, y: foam below its surface.
+vec2 foam_cover(int at) { return 1.0 - exp(-vec2(cover[2 * at], cover[2 * at + 1]) / foam_units); }
 #endif
 
 void main() {
@@ -104,15 +117,18 @@ void main() {
   const float footprint_per_m = rays.z / per_depth;
   const Crossing crossing = cross_tank(eye, d);
   float frame_at;
-  float cover = near_frame(crossing, eye, d, footprint_per_m, frame_at);
+  float frame = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
   bool is_water = nearness[at] > 0.0;
+  float nearest = nearness[at];
 #ifdef OBSTACLES
   const float obstacle_at = meet_obstacles(eye, d).at;
   if (is_water && obstacle_at < per_depth / nearness[at]) is_water = false;
-  if (obstacle_at < frame_at) cover = 0.0;
+  if (!is_water) nearest = per_depth / obstacle_at;
+  if (obstacle_at < frame_at) frame = 0.0;
 #endif
-  const float water_cover = is_water ? outline_cover(pixel) : 0.0;
+  const float radius = normals[at].w;
+  const float water_cover = is_water ? small_cover(pixel, nearness[at], radius) : 0.0;
   vec3 light = vec3(0.0);
 #ifdef FOAM
   const vec2 foam = foam_cover(at);
@@ -121,20 +137,21 @@ void main() {
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
   if (is_water) {
     const float distance_m = per_depth / nearness[at];
-    const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
+    const vec3 n = mat3(eye_to_world) * shading_normal(pixel, at, ray);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
-    vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
+    vec3 wet = water(position, d, n, water_length(xy), max(radius * origin.w, 1e-4), footprint_per_m, distance_m);
 #ifdef FOAM
-    shaded = mix(shaded, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
+    wet = mix(wet, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
     foam_normal = n;
-    if (foam.x > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, foam.x);
 #endif
-    light = mix(light, shaded, water_cover);
-    // Water nearer than the tank's frame hides it. The tolerance keeps the frame visible over water at the wall.
-    if (distance_m < 0.999 * frame_at) cover = 0.0;
+    light = mix(light, wet, water_cover);
+    // Only water above the tank's rim, or leaked water, may hide the near side of the frame.
+    if ((position.y > tank.y || tank.w == 0.0) && distance_m < 0.999 * frame_at) frame = 0.0;
   }
 #ifdef FOAM
   light = mix(light, foam_light(foam_normal), foam.x);
+  cover[2 * at] = floatBitsToUint(is_water ? foam.x : 0.0);  // for edges.comp
 #endif
-  imageStore(picture, pixel + ivec2(origin.xy), vec4(encode_srgb(mix(light, frame_colour, cover)), 1.0));
+  shaded[at] = packed_light(mix(light, frame_colour, frame));
+  shown[at] = nearest;
 }

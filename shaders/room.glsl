@@ -1,6 +1,6 @@
-// Surroundings of the fluid: a tiled floor, a glass tank with frame and level marks, ground and sky. Colours are
-// linear light.
+// The tank with its tiled floor, glass, frame and level marks, and what is seen through it. Colours are linear light.
 #include "light.glsl"
+#include "surroundings.glsl"
 const float frame_m = 0.06;
 
 #ifdef OBSTACLES
@@ -10,18 +10,6 @@ const float frame_m = 0.06;
 #include "lit_floor.glsl"
 #endif
 
-vec3 sky(vec3 d) {
-  const float up = max(d.y, 0.0);
-  const vec3 air = mix(vec3(0.72, 0.80, 0.86), vec3(0.16, 0.34, 0.62), pow(up, 0.5));
-  return air + vec3(1.0, 0.85, 0.6) * (0.25 * pow(max(dot(d, sun), 0.0), 32.0));
-}
-
-vec3 outdoors(vec3 o, vec3 d) {
-  if (d.y > -1e-4) return sky(d);
-  const float t = -o.y / d.y;
-  return mix(vec3(0.72, 0.80, 0.86), vec3(0.30, 0.29, 0.27), exp(-0.012 * max(t, 0.0)));
-}
-
 // Checker of 1 m tiles, averaged over a footprint of `width` m (box filter, exact).
 float checker(vec2 p, vec2 width) {
   const vec2 w = max(width, vec2(1e-3));
@@ -29,18 +17,10 @@ float checker(vec2 p, vec2 width) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
-// Share of a footprint of `width` m that a line of half width `half_line` m covers, at `distance` m from its middle.
-float line(float distance, float half_line, float width) {
-  return clamp((half_line + 0.5 * width - distance) / max(width, 1e-4), 0.0, 1.0) *
-         min(1.0, 2.0 * half_line / max(width, 1e-4));
-}
-
 vec3 tiles(vec3 p, vec3 d, float width) {
-  const float stretched = width / max(-d.y, 0.08);
-  const float c = checker(p.xz, vec2(min(stretched, 2.0)));
-  const vec2 to_joint = abs(fract(p.xz + 0.5) - 0.5);
-  const float joint = line(min(to_joint.x, to_joint.y), 0.012, stretched);
-  return mix(mix(vec3(0.50, 0.53, 0.54), vec3(0.80, 0.80, 0.77), c), vec3(0.30, 0.31, 0.32), joint);
+  const vec2 wide = on_floor(d, width), joints = strips(p.xz, 0.012, 1.0, wide);
+  const float joint = joints.x + joints.y - joints.x * joints.y;
+  return mix(mix(vec3(0.50, 0.53, 0.54), vec3(0.80, 0.80, 0.77), checker(p.xz, wide)), vec3(0.30, 0.31, 0.32), joint);
 }
 
 // Distance of a point on a face of the tank to the nearest edge of that face, m. `axis`: 0, 1, 2 = x, y, z, the axis
@@ -73,14 +53,14 @@ const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
 
 // Share of a footprint of `width` m, around point p of a face of the tank, that the frame along the face's edges
 // covers.
-float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, axis), frame_m, width); }
+float frame_cover(vec3 p, int axis, float width) { return strip(edge_distance(p, axis), frame_m, width); }
 
-// Light that arrives along the ray d at point o inside the tank.
-vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
+// Light that arrives along the ray d at point o inside the tank. `framed`: opacity of the tank's frame, 0 to 1.
+vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) {
   const Crossing c = cross_tank(o, d);
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);
-  if (met.at < never) return obstacle_light(met.normal);
+  if (met.at < never) return obstacle_light(met);
 #endif
   const vec3 p = o + max(c.leave, 0.0) * d;
   const float width = footprint_per_m * (travelled + max(c.leave, 0.0));
@@ -89,14 +69,15 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
 #ifdef LIT_FLOOR
     below *= floor_light(p, d, width);
 #endif
-    return mix(below, frame_colour, frame_cover(p, 1, width));
+    return mix(below, frame_colour, framed * frame_cover(p, 1, width));
   }
-  const vec3 beyond = outdoors(p, d);
+  const vec3 beyond = surroundings(p, d, footprint_per_m, travelled + max(c.leave, 0.0));
+  const float frame = framed * frame_cover(p, c.leave_axis, width);
   const bool above = c.leave_axis == 1;
-  if (above && absorption.w == 0.0) return mix(beyond, frame_colour, frame_cover(p, 1, width));
-  const float mark = above ? 0.0 : line(abs(fract(p.y + 0.5) - 0.5), 0.012, width) * 0.35;
+  if (above && absorption.w == 0.0) return mix(beyond, frame_colour, frame);
+  const float mark = above ? 0.0 : strips(p.y, 0.012, 1.0, width) * 0.35;
   const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
-  return mix(glass, frame_colour, frame_cover(p, c.leave_axis, width));
+  return mix(glass, frame_colour, frame);
 }
 
 // Share of the pixel that the frame on the tank's near side covers. `at`: distance to that side along the ray, m; 0
@@ -112,9 +93,9 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
 vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);
-  if (met.at < never) return obstacle_light(met.normal);
+  if (met.at < never) return obstacle_light(met);
 #endif
-  if (c.leave <= max(c.enter, 0.0)) return outdoors(o, d);
-  if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0);
-  return seen_from_inside(o + c.enter * d + 1e-4 * d, d, footprint_per_m, c.enter);
+  if (c.leave <= max(c.enter, 0.0)) return surroundings(o, d, footprint_per_m, 0.0);
+  if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0, 1.0);
+  return seen_from_inside(o + c.enter * d + 1e-4 * d, d, footprint_per_m, c.enter, 1.0);
 }

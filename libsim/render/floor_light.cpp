@@ -45,9 +45,11 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
              cells(tank(0), edge), cells(tank(2), edge)},
             {low, low, surface_edge, options.radius_scale},
             {edge, 1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, smoothing_r},
-            {strength_of(scene.picture_effects, PictureEffectKind::Shadows),
-             strength_of(scene.picture_effects, PictureEffectKind::Caustics), 0, 0},
-            {options.absorption_per_m[0], options.absorption_per_m[1], options.absorption_per_m[2], 0}};
+            {floor_strength(scene, PictureEffectKind::Shadows),
+             floor_strength(scene, PictureEffectKind::Caustics), 0, 0},
+            {}};
+  for (std::size_t k = 0; k < 3; ++k)
+    block_.absorption[k] = static_cast<float>(scene.light.absorption_per_m[k]);
   splat_ = compute_program("light_splat.comp");
   splat_images_ = compute_program("light_splat.comp", "#define IMAGES\n");
   smooth_first_ = compute_program("light_smooth.comp", "#define FIRST\n");

@@ -129,15 +129,16 @@ std::string passes_in_words(const Scene& scene) {
   if (lights_the_floor(scene)) out << "light (for what follows), ";
   for (std::size_t k = 0; k < picture_effect_count; ++k) {
     const auto kind = static_cast<PictureEffectKind>(k);
-    add(traits_of(kind).word, "strength", strength_of(scene.picture_effects, kind));
+    add(traits_of(kind).word, "strength", floor_strength(scene, kind));
   }
-  out << "shade\n" << absent.str();
+  out << "shade, edges\n" << absent.str();
   return out.str();
 }
 
 FluidRenderer::FluidRenderer(const Scene& scene, const RenderOptions& options) {
   check_options(options);
   check_picture_effects(scene.picture_effects);
+  check_light(scene.light);
   state_ = std::make_unique<State>(scene, options);
 }
 

@@ -95,8 +95,6 @@ struct RenderOptions {
   /// Share of space filled by touching spheres in a cubic lattice (pi / 6): thickness / packing is the path
   /// length through water.
   float packing = 0.5235988F;
-  /// Beer-Lambert absorption of red, green and blue, 1/m.
-  std::array<float, 3> absorption_per_m{0.45F, 0.14F, 0.10F};
   /// Footprints up to this many px per side are splatted by one invocation; 0: 16 on a GPU, 64 on software
   /// GL, but not more than group_px.
   int thread_px = 0;

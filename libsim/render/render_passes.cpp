@@ -80,27 +80,40 @@ std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
 }  // namespace
 
 std::string obstacle_defines(const Scene& scene) {
-  if (scene.obstacles.empty()) return "";
+  if (scene.obstacles.empty() && scene.nozzles.empty()) return "";
   return any_mesh(scene.obstacles) ? "#define OBSTACLES\n#define MESHES\n" : "#define OBSTACLES\n";
 }
 
+float floor_strength(const Scene& scene, PictureEffectKind kind) {
+  const bool listed = std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
+                                  [&](const PictureEffect& effect) { return effect.kind == kind; });
+  if (!listed && kind == PictureEffectKind::Shadows) return scene.light.shadow ? 1 : 0;
+  return strength_of(scene.picture_effects, kind);
+}
+
 bool lights_the_floor(const Scene& scene) {
-  return std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
-                     [](const PictureEffect& effect) { return effect.strength > 0; });
+  return floor_strength(scene, PictureEffectKind::Shadows) > 0 ||
+         floor_strength(scene, PictureEffectKind::Caustics) > 0;
 }
 
 FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
     : options(chosen),
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
-      lid(scene.lid),
+      absorption{static_cast<float>(scene.light.absorption_per_m[0]),
+                 static_cast<float>(scene.light.absorption_per_m[1]),
+                 static_cast<float>(scene.light.absorption_per_m[2]), scene.lid ? 1.0F : 0.0F},
       timer(chosen.time_passes),
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
       floor_light(lights_the_floor(scene) ? std::make_unique<FloorLight>(scene, chosen) : nullptr),
-      composite(compute_program("composite.comp",
-                                (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
+      surroundings(scene),
+      composite(compute_program(
+          "composite.comp",
+          (defines_of(scene) + surroundings.defines() + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
+      edges(compute_program("edges.comp", foam ? "#define FOAM\n" : "")),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
-      obstacles(scene.obstacles) {
+      obstacles(scene.obstacles),
+      pipes(pipes_of(scene)) {
   // On llvmpipe one invocation draws footprints of up to 64 px, on a GPU of up to 16 px: llvmpipe runs
   // invocations as SIMD lanes, so that a team of invocations for a small footprint is slower there.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
@@ -118,7 +131,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
 }
 
 void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motions) {
-  if (obstacles.empty()) return;
+  if (solids() == 0) return;
   std::vector<std::array<float, 4>> rows;
   const auto row = [&](const auto& v, double last) {
     rows.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
@@ -130,6 +143,11 @@ void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motion
     row(pose.centre_m, o.radius_m);
     row(half_sides_m(o), o.mesh ? 1 : 0);
     row(pose.turn, pose.turn[3]);
+  }
+  for (const Pipe& pipe : pipes) {
+    row(pipe.centre_m, pipe.radius_m);
+    row(Vec3d{0, pipe.half_length_m, 0}, 2);  // pipe_kind of obstacles.glsl
+    row(pipe.turn, pipe.turn[3]);
   }
   const auto bytes = static_cast<GLsizeiptr>(rows.size() * sizeof rows[0]);
   poses.reserve(bytes);
@@ -157,8 +175,7 @@ void FluidRenderer::State::write_block(ViewTargets& t) const {
                          static_cast<float>(options.filter_max_px)},
                         {1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, step,
                          static_cast<float>(options.filter_max_taps)},
-                        {options.absorption_per_m[0], options.absorption_per_m[1],
-                         options.absorption_per_m[2], lid ? 1.0F : 0.0F},
+                        absorption,
                         tank};
   glNamedBufferSubData(t.block.name(), 0, sizeof block, &block);
 }
@@ -323,12 +340,11 @@ void FluidRenderer::State::smooth_thickness() {
 }
 
 void FluidRenderer::State::tell_obstacles(const GlProgram& program) const {
-  if (!obstacles.empty())
-    glUniform1i(program.uniform("obstacle_count"), static_cast<GLint>(obstacles.size()));
+  if (solids() > 0) glUniform1i(program.uniform("obstacle_count"), solids());
 }
 
 void FluidRenderer::State::bind_obstacles() const {
-  if (!obstacles.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
+  if (solids() > 0) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
   if (grids.name()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, grids.name());
 }
 
@@ -345,23 +361,39 @@ void FluidRenderer::State::splat_foam(const ParticleBuffer& from) {
 }
 
 void FluidRenderer::State::light_floor() {
-  floor_light->compute({particles_, count_, poses.name(), grids.name(), static_cast<int>(obstacles.size())},
-                       timer);
+  floor_light->compute({particles_, count_, poses.name(), grids.name(), solids()}, timer);
 }
 
-void FluidRenderer::State::shade(std::span<const View> views, unsigned framebuffer) {
+void FluidRenderer::State::shade() {
   composite.use();
   tell_obstacles(composite);
   if (floor_light) floor_light->bind();
-  picture.begin(framebuffer, views);
+  surroundings.bind(composite);
   each_view([&](const ViewTargets& t) {
-    bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name()});
+    bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name(), 0, 0,
+                  t.shaded.name(), t.shown.name()});
     bind_obstacles();
     dispatch_pixels(t.width, t.height);
   });
-  picture.end(framebuffer, views);
   if (floor_light) glBindTextureUnit(0, 0);
+  Surroundings::unbind();
   timer.mark("shade");
+}
+
+void FluidRenderer::State::smooth_edges(std::span<const View> views, unsigned framebuffer) {
+  outlines.use();
+  each_view([&](const ViewTargets& t) {
+    bind_storage({t.shown.name(), t.normals.name(), t.outlines.name()});
+    dispatch_pixels(t.width, t.height);
+  });
+  edges.use();
+  picture.begin(framebuffer, views);
+  each_view([&](const ViewTargets& t) {
+    bind_storage({t.shaded.name(), t.outlines.name(), t.normals.name(), t.foam.name()});
+    dispatch_pixels(t.width, t.height);
+  });
+  picture.end(framebuffer, views);
+  timer.mark("edges");
 }
 
 void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<const View> views,
@@ -387,7 +419,8 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   smooth_thickness();
   if (foam && foam_from && foam_from->count() > 0) splat_foam(*foam_from);
   if (floor_light) light_floor();
-  shade(views, framebuffer);
+  shade();
+  smooth_edges(views, framebuffer);
 }
 
 }  // namespace sim

@@ -13,6 +13,7 @@
 #include "libsim/render/floor_light.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/pass_timer.hpp"
+#include "libsim/render/surroundings.hpp"
 #include "libsim/render/view_targets.hpp"
 
 namespace sim {
@@ -29,7 +30,9 @@ void bind_storage(std::initializer_list<unsigned> buffers);
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
 
-/// True if the scene needs FloorLight: it lists shadows or caustics with a strength above 0.
+/// Strength of a picture effect. Where the scene does not list shadows, [light] decides on them.
+float floor_strength(const Scene& scene, PictureEffectKind kind);
+/// True if the scene needs FloorLight: shadows or caustics have a strength above 0.
 bool lights_the_floor(const Scene& scene);
 /// The parts of shaders/obstacles.glsl that the scene needs, as #define lines.
 std::string obstacle_defines(const Scene& scene);
@@ -37,7 +40,7 @@ std::string obstacle_defines(const Scene& scene);
 struct FluidRenderer::State {
   RenderOptions options;
   std::array<float, 4> tank;
-  bool lid;
+  std::array<float, 4> absorption;  // 1/m; the last one is 1 if the tank has a lid
   PassTimer timer;
   bool foam;  // the scene lists foam: draws one more pass, and compiles foam into the composite
   GlProgram clear_targets = compute_program("clear.comp");
@@ -55,13 +58,17 @@ struct FluidRenderer::State {
   GlProgram thickness_first = compute_program("smooth_thickness.comp", "#define FIRST\n");
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
   std::unique_ptr<FloorLight> floor_light;  // only with picture effects
+  Surroundings surroundings;
   GlProgram composite;
+  GlProgram outlines = compute_program("outlines.comp");
+  GlProgram edges;
   GlProgram splat_foam_program;
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
   std::vector<Obstacle> obstacles;
-  GlBuffer poses;  // poses of the obstacles; not allocated without obstacles
-  GlBuffer grids;  // distance grids of the obstacles that are meshes
+  std::vector<Pipe> pipes;  // drawn like obstacles
+  GlBuffer poses;           // poses of the obstacles; not allocated without obstacles
+  GlBuffer grids;           // distance grids of the obstacles that are meshes
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
@@ -98,8 +105,10 @@ struct FluidRenderer::State {
   void splat_foam(const ParticleBuffer& from);
   void tell_obstacles(const GlProgram& program) const;  ///< sets the number of obstacles of a program in use
   void bind_obstacles() const;
+  int solids() const { return static_cast<int>(obstacles.size() + pipes.size()); }
   void light_floor();
-  void shade(std::span<const View> views, unsigned framebuffer);
+  void shade();
+  void smooth_edges(std::span<const View> views, unsigned framebuffer);
 
   GLuint particles_ = 0;  // GL buffer of the particles of the present draw
   GLuint shapes_ = 0;     // GL buffer of their ellipsoids; 0: spheres

@@ -23,8 +23,10 @@ void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foa
   const std::int64_t pixels = std::int64_t{width} * height;
   const std::int64_t cells = std::int64_t{cells_x} * cells_y;
   block.reserve(512);
-  for (GlBuffer* buffer : {&depth, &front, &radii, &filter_a, &filter_b}) buffer->reserve(4 * pixels);
+  for (GlBuffer* buffer : {&depth, &front, &radii, &filter_a, &filter_b, &shown, &outlines})
+    buffer->reserve(4 * pixels);
   normals.reserve(16 * pixels);
+  shaded.reserve(8 * pixels);
   blocks.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 15) / 16));
   for (GlBuffer* buffer : {&thickness, &thickness_a, &thickness_b}) buffer->reserve(4 * cells);
   if (with_foam) {

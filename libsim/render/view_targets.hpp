@@ -31,6 +31,8 @@ struct ViewTargets {
   GlBuffer thickness;                 ///< sum of the chords of all spheres per cell, fixed point
   GlBuffer thickness_a, thickness_b;  ///< the smoothed result is in thickness_a, in fixed-point units
   GlBuffer foam;                      ///< two words per pixel, see foam.glsl; all 0 between pictures
+  GlBuffer shaded, shown;             ///< per pixel: linear light (shaded.glsl), nearness of what it shows
+  GlBuffer outlines;                  ///< per pixel, flags of outlines.comp
 
   void resize(const View& new_view, int thickness_step, bool with_foam);
   /// Allocates the buffers with an entry per particle for `count` particles.

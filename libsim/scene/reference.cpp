@@ -88,6 +88,9 @@ closed while the water settles.)"},
          R"(A rigid body, at most 16; format 2 ([methods.md](methods.md#obstacles)). It stands still while the
 water settles. It must be as thick as the coarsest particles that the run may hold are apart: d in HiRes,
 2 d in LoRes and with four levels.)"},
+        {"light", "[light]",
+         R"(What lights the scene in pictures ([methods.md](methods.md#surroundings-and-light)). The water does
+not know of it.)"},
         {"warm", "[[warm]]",
          "A box whose water begins at another temperature; of boxes that overlap the later counts. Needs the "
          "effect\nheat."},
@@ -218,6 +221,7 @@ std::vector<KeyReference> all_keys() {
       {"", "outlet", "tables", "", "none", "holes in the walls"},
       {"", "central_force", "table", "", "none", "in addition to gravity"},
       {"", "obstacle", "tables", "", "none", "rigid bodies; format 2"},
+      {"", "light", "table", "", "its keys' defaults", "surroundings, colour of water, shadow on the floor"},
       {"", "warm", "tables", "", "none", "water of other temperatures"},
       {"", "effect", "tables", "", "none", "what the scene has beside the method; format 2"},
 
@@ -331,6 +335,18 @@ std::vector<KeyReference> all_keys() {
        "needed by free: the same in all of it"},
       {"obstacle", "friction", "number", "[0, 10]", "0",
        "Coulomb's coefficient of its surface against free obstacles, or of a free one's"},
+
+      {"light", "environment", "text", R"("sky", "room")", "\"sky\"",
+       "what surrounds the tank. sky: sun, clouds and paved ground up to the horizon. room: a hall with "
+       "windows "
+       "and lamps"},
+      {"light", "seed", "whole number", "[0, 1000000]", "0",
+       "places clouds, windows and lamps; the same seed gives the same surroundings"},
+      {"light", "absorption_per_m", "list of numbers", "[0, 100]", "[0.45, 0.14, 0.1]",
+       "by water, of red, green and blue light: e^(-absorption x path) is left"},
+      {"light", "shadow", "true or false", "", "true",
+       "flying water, obstacles and nozzles' pipes cast a shadow on the floor, also without the effect "
+       "shadows"},
 
       {"warm", "min_m", "list of numbers", anywhere, "", least_corner},
       {"warm", "max_m", "list of numbers", anywhere, "", largest_corner},

@@ -358,6 +358,7 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   const auto effects = root.tables("effect");
   scene.effects = read_effects(effects);
   scene.picture_effects = read_picture_effects(effects);
+  scene.light = read_light(root);
   read_warm(root, scene);
   scene.obstacles = read_obstacles(root, scene.room_m(), scene.origin_m, scene.v_ref_m_s, beside);
   read_nozzles(root, scene);

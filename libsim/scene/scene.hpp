@@ -14,6 +14,7 @@
 #include "libsim/scene/central_force.hpp"
 #include "libsim/scene/effects.hpp"
 #include "libsim/scene/heat.hpp"
+#include "libsim/scene/light.hpp"
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/obstacle.hpp"
 #include "libsim/scene/picture_effects.hpp"
@@ -97,6 +98,7 @@ struct Scene {
   std::optional<CentralForce> central_force;   ///< in addition to gravity
   std::vector<Effect> effects;                 ///< each kind once; includes dropped effects (coefficient 0)
   std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver ignores them
+  SceneLight light;                            ///< of pictures; the solver ignores it
   std::vector<WarmBox> warm;                   ///< only with the effect heat
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (substeps_of in libsim/scene/fill.hpp).

@@ -56,6 +56,11 @@ near_m = 0.1
 [[gaze]]
 frame = 0
 point_m = [4.0, 1.0, 2.0]
+[light]
+environment = "room"
+seed = 7
+absorption_per_m = [0.4, 0.2, 0.1]
+shadow = false
 [[visible]]
 name = "all"
 min_m = [0.0, 0.0, 0.0]
@@ -266,7 +271,7 @@ TEST(SceneReference, HasAUnitForEachNumberButTheseRatiosAndCounts) {
   const std::set<std::string> plain{"format",       "min_substeps",    "iterations",    "courant",
                                     "axis",         "rotation_axis",   "scale",         "friction",
                                     "stick",        "cg_steps",        "strength",      "coarsest_level",
-                                    "crest_weight", "saliency_weight", "most_particles"};
+                                    "crest_weight", "saliency_weight", "most_particles", "seed"};
   for (const auto& key : sim::scene_reference())
     EXPECT_EQ(key.unit.empty(), plain.contains(key.key) || key.type.find("number") == std::string::npos)
         << test::name_of(key) << " " << key.unit;

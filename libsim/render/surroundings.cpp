@@ -1,0 +1,84 @@
+#include "libsim/render/surroundings.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "libsim/render/render_passes.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr int sky_px = 512;
+constexpr GLuint sky_unit = 1;  // of surroundings.glsl
+// The water is splatted larger than the particles; a pipe hides it up to this many radii of the mouth.
+constexpr double pipe_per_mouth = 1.3;
+constexpr double room_per_tank = 1.2, height_per_tank = 2.0, least_hall_m = 2.5;
+
+}  // namespace
+
+std::vector<Pipe> pipes_of(const Scene& scene) {
+  std::vector<Pipe> out;
+  for (const Nozzle& nozzle : scene.nozzles) {
+    const double radius = pipe_per_mouth * nozzle.diameter_m / 2;
+    const auto& [x, y, z] = nozzle.position_m;
+    const double top = std::max(scene.tank_size_m[1], y) + 2 * nozzle.diameter_m;
+    const double behind = -1.5 * nozzle.diameter_m - radius;
+    const double half = std::numbers::sqrt2 / 2;
+    out.push_back({{x, (y + top + radius) / 2, z}, radius, (top + radius - y) / 2});
+    out.push_back({{x, top, (z + behind) / 2}, radius, (z - behind) / 2, {half, 0, 0, half}});
+    out.push_back({{x, (top + radius) / 2, behind}, radius, (top + radius) / 2});
+  }
+  return out;
+}
+
+Surroundings::Surroundings(const Scene& scene) {
+  if (scene.light.environment == Environment::Sky) {
+    paint_sky(scene.light.seed);
+    return;
+  }
+  const Vec3d& tank = scene.tank_size_m;
+  const double around = room_per_tank * std::max(tank[0], tank[2]) + least_hall_m;
+  std::mt19937 random(static_cast<unsigned>(scene.light.seed));
+  for (std::size_t k = 0; k < 3; ++k) {
+    // The hall holds the tank and the scene's cameras.
+    const auto [least, most] = std::minmax({scene.view.eye_m[k], scene.overview.eye_m[k], 0.0});
+    const double high = k == 1 ? height_per_tank * tank[1] + least_hall_m : tank[k] + around;
+    hall_[k] = k == 1 ? 0 : static_cast<float>(std::min(-around, least - 1));
+    hall_[4 + k] = static_cast<float>(std::max(high, most + 1));
+    hall_[8 + k] = static_cast<float>(random() >> 8) / 16777216;
+  }
+}
+
+void Surroundings::paint_sky(int seed) {
+  glCreateTextures(GL_TEXTURE_2D, 1, &sky_);
+  glTextureStorage2D(sky_, std::bit_width(static_cast<unsigned>(sky_px)), GL_RGBA16F, sky_px, sky_px);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(sky_, axis, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(sky_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  const GlProgram paint = compute_program("environment.comp");
+  paint.use();
+  glUniform1ui(paint.uniform("seed"), static_cast<GLuint>(seed));
+  glBindImageTexture(0, sky_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  dispatch_pixels(sky_px, sky_px);
+  glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  glGenerateTextureMipmap(sky_);
+  glUseProgram(0);
+}
+
+Surroundings::~Surroundings() { glDeleteTextures(1, &sky_); }
+
+void Surroundings::bind(const GlProgram& program) const {
+  if (sky_) return glBindTextureUnit(sky_unit, sky_);
+  glUniformMatrix4fv(program.uniform("hall"), 1, GL_FALSE, hall_.data());
+}
+
+void Surroundings::unbind() { glBindTextureUnit(sky_unit, 0); }
+
+}  // namespace sim
