@@ -17,6 +17,7 @@ layout(std430, binding = 6) writeonly buffer Shaded { uvec2 shaded[]; };
 layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
+const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
 
 float water_length(vec2 xy) {
@@ -46,7 +47,8 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float radius, float fo
   const float facing = clamp(-dot(d, n), 0.0, 1.0);
   const float fresnel = reflected_share(facing) * smoothstep(0.0, thin_m, length_m);
   const vec3 inside = refract(d, n, into_water);
-  float room = max(cross_tank(position, inside).leave, 0.0);
+  const Crossing crossing = cross_tank(position, inside);
+  float room = max(crossing.leave, 0.0);
 #ifdef OBSTACLES
   room = min(room, meet_obstacles(position, inside).at);
 #endif
@@ -56,30 +58,61 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float radius, float fo
   const float as_drop = (1.0 - smoothstep(1.0, 2.5, 0.5 * length_m / radius)) * (1.0 - to_wall);
   const vec3 out_direction = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
   const float framed = smoothstep(0.5, 0.9, to_wall);
-  const vec3 behind = seen_from_inside(position + (way - 1e-3) * inside, out_direction, footprint_per_m, distance_m + way, framed);
-  const vec3 kept = exp(-absorption.rgb * way);
-  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * way)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
+  vec3 from = position + (way - 1e-3) * inside, onwards = out_direction;
+  float through = way;
+  // A side wall that light meets too slantwise to leave the water mirrors it to the floor.
+  const int wall = crossing.leave_axis;
+  if (to_wall > 0.95 && wall != 1 && room == max(crossing.leave, 0.0) && inside[wall] * inside[wall] < no_way_out) {
+    onwards = inside;
+    onwards[wall] = -inside[wall];
+    through += min(max(cross_tank(from, onwards).leave, 0.0), way);
+  }
+  const vec3 behind = seen_from_inside(from, onwards, footprint_per_m, distance_m + way, framed);
+  const vec3 kept = exp(-absorption.rgb * through);
+  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
   return mix(body, mirrored_light(position, reflect(d, n), footprint_per_m, distance_m), fresnel);
 }
 
-// The normal of a pixel for shading, in eye space. Beside a jump of depth the difference of neighbours says little, so
-// that the pixel takes the mean normal of its neighbours on the same layer. A normal never faces away from the eye.
+// The normal of a pixel for shading, in eye space. Three normals are replaced: beside a jump of depth, where the
+// difference of neighbours says little, by the mean of the neighbours on the same layer; at the picture's border, to
+// which the depth filter reaches from one side only, by that of a pixel further inside; and one that faces away from
+// the eye, by the nearest that does not.
 vec3 shading_normal(ivec2 pixel, int at, vec3 ray) {
-  const float centre = nearness[at], reach = 2.0 * normals[at].w * origin.w * centre * centre;
-  vec3 n = normals[at].xyz, sum = vec3(0.0);
+  const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
+  vec3 n = normals[at].xyz;
   int around = 0;
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      const ivec2 near = clamp(pixel + ivec2(x, y), ivec2(0), size.xy - 1);
-      const int there = near.y * size.x + near.x;
-      if (nearness[there] == 0.0 || abs(nearness[there] - centre) > reach) continue;
-      sum += normals[there].xyz;
-      ++around;
-    }
+  for (int k = 0; k < 9; ++k) {
+    const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
+    const float there = nearness[near.y * size.x + near.x];
+    around += int(there > 0.0 && abs(there - centre) < reach);
   }
-  if (around < 9) n = normalize(sum + 1e-3 * n);
-  const float away = dot(n, ray) / length(ray);
-  return normalize(n - max(away + 0.03, 0.0) * ray / length(ray));
+  if (around < 9) {
+    for (int k = 0; k < 9; ++k) {
+      const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
+      const int there = near.y * size.x + near.x;
+      if (nearness[there] > 0.0 && abs(nearness[there] - centre) < reach) n += normals[there].xyz;
+    }
+    n = normalize(n);
+  }
+  const ivec2 border = ivec2(clamp(0.5 * radius * centre / rays.x, 1.0, 24.0));
+  const ivec2 inner = clamp(pixel, min(border, size.xy / 2), max(size.xy - 1 - border, size.xy / 2));
+  if (inner != pixel) {
+    const int there = inner.y * size.x + inner.x;
+    if (nearness[there] > 0.0 && abs(nearness[there] - centre) < 2.0 * reach) n = normals[there].xyz;
+  }
+  const vec3 away = ray / length(ray);
+  return normalize(n - max(dot(n, away) + 0.03, 0.0) * away);
+}
+
+// The filter rounds off the edge between the surface and water that lies against the tank's near side. There the
+// water is as flat as the glass: the normal is the glass's, in world space, and its own from one radius behind it on.
+vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius) {
+  if (tank.w == 0.0 || c.enter <= 0.0 || (c.enter_axis == 1 && (d.y > 0.0 || absorption.w == 0.0))) return n;
+  const float towards = d[c.enter_axis];
+  vec3 glass = vec3(0.0);
+  glass[c.enter_axis] = -sign(towards);
+  const float behind = (distance_m - c.enter) * abs(towards);
+  return normalize(mix(glass, n, smoothstep(0.1, 1.0, behind / radius) + 1e-4));
 }
 
 // Opacity of a fluid pixel whose particle is smaller than the pixel: its share of the pixel, and more where its
@@ -137,9 +170,11 @@ void main() {
   if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
   if (is_water) {
     const float distance_m = per_depth / nearness[at];
-    const vec3 n = mat3(eye_to_world) * shading_normal(pixel, at, ray);
+    const float splatted = max(radius * origin.w, 1e-4);
+    const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray);
+    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, splatted);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
-    vec3 wet = water(position, d, n, water_length(xy), max(radius * origin.w, 1e-4), footprint_per_m, distance_m);
+    vec3 wet = water(position, d, n, water_length(xy), splatted, footprint_per_m, distance_m);
 #ifdef FOAM
     wet = mix(wet, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
     foam_normal = n;

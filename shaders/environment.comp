@@ -31,7 +31,7 @@ float density(vec2 p) {
     p = mat2(1.6, 1.2, -1.2, 1.6) * p;
     strength *= 0.5;
   }
-  return smoothstep(0.44, 0.72, sum);
+  return smoothstep(0.40, 0.62, sum);
 }
 
 void main() {
@@ -41,7 +41,7 @@ void main() {
   const vec2 p = 0.5 * vec2(e.x + e.y, e.x - e.y);
   const vec3 d = normalize(vec3(p.x, 1.0 - abs(p.x) - abs(p.y), p.y));
   const float towards_sun = max(dot(d, sun), 0.0);
-  vec3 light = mix(haze, vec3(0.13, 0.29, 0.58), pow(d.y, 0.45));
+  vec3 light = mix(haze, vec3(0.10, 0.26, 0.58), pow(d.y, 0.40));
   light += vec3(1.0, 0.85, 0.6) * (0.22 * pow(towards_sun, 24.0) + 4.0 * pow(towards_sun, 1500.0));
   const vec2 layer = 1.7 * d.xz / (d.y + 0.15);
   const float cloud = density(layer) * smoothstep(0.03, 0.25, d.y);

@@ -8,5 +8,5 @@ const float sun_share = 0.7;  // share of the floor's light from the sun; the re
 vec3 floor_light(vec3 p, vec3 d, float width) {
   const vec2 size = vec2(maps.cells.zw) * maps.floor_grid.x;
   const float cells = width * inversesqrt(max(-d.y, 0.08)) / maps.floor_grid.x;
-  return 1.0 - sun_share + sun_share * textureLod(sunlight, p.xz / size, log2(max(cells, 1.0))).rgb;
+  return 1.0 - sun_share + sun_share * textureLod(sunlight, p.xz / size, max(log2(max(cells, 1.0)), maps.strength.z)).rgb;
 }

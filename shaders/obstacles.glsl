@@ -63,6 +63,13 @@ Meeting meet_obstacles(vec3 o, vec3 d) {
   for (int k = 0; k < obstacle_count; ++k) {
     const vec4 centre = obstacles[3 * k], half_sides = obstacles[3 * k + 1], turn = obstacles[3 * k + 2];
     const vec4 back = vec4(-turn.xyz, turn.w);
+    if (half_sides.w == pipe_kind) {
+      Meeting pipe = Meeting(m.at, m.normal, pipe_kind);
+      meet_side(pipe, o - centre.xyz, d, half_sides.y, centre.w);
+      meet_end(pipe, o - centre.xyz, d, -half_sides.y, centre.w);
+      if (pipe.at < m.at) m = pipe;
+      continue;
+    }
     const vec3 from = turned(back, o - centre.xyz), along = turned(back, d);
     Meeting here = Meeting(m.at, vec3(0.0), half_sides.w);
 #ifdef MESHES
@@ -72,11 +79,7 @@ Meeting meet_obstacles(vec3 o, vec3 d) {
       if (at > 0.0 && at < m.at) nearer(here, at, mesh_normal(grid, from + at * along));
     } else
 #endif
-    if (half_sides.w == pipe_kind) {
-      meet_side(here, from, along, half_sides.y, centre.w);
-      meet_end(here, from, along, half_sides.y, centre.w);
-      meet_end(here, from, along, -half_sides.y, centre.w);
-    } else if (centre.w > 0.0) {
+    if (centre.w > 0.0) {
       meet_ball(here, from, along, half_sides.y, centre.w);
       meet_ball(here, from, along, -half_sides.y, centre.w);
       meet_side(here, from, along, half_sides.y, centre.w);

@@ -22,6 +22,15 @@ constexpr float smoothing_r =
     2;  // standard deviation, particle radii; waves 11 radii long keep half their height
 constexpr int surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
 
+// Where only [light] asks for a shadow, the maps are coarser and the shadow softer.
+constexpr int soft_cells = 256;
+constexpr float soft_level = 1;
+
+bool lists_light(const Scene& scene) {
+  return std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
+                     [](const PictureEffect& effect) { return effect.strength > 0; });
+}
+
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
 GLsizei levels_of(int cells) { return static_cast<GLsizei>(std::bit_width(static_cast<unsigned>(cells))); }
@@ -31,7 +40,9 @@ GLsizei levels_of(int cells) { return static_cast<GLsizei>(std::bit_width(static
 FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const auto tank = [&](std::size_t k) { return static_cast<float>(scene.tank_size_m[k]); };
   const float longest = std::max(tank(0), tank(2));
-  const float edge = longest / static_cast<float>(options.floor_cells);
+  const bool listed = lists_light(scene);
+  const int most_cells = listed ? options.floor_cells : std::min(options.floor_cells, soft_cells);
+  const float edge = longest / static_cast<float>(most_cells);
   const float surface_edge = edge * surface_cell_in_cells;
   // Assumed upper bound of the water's depth, from which the extent of the surface map beyond the floor
   // follows: the tank's height, or the floor's longer side if that is less.
@@ -46,7 +57,7 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
             {low, low, surface_edge, options.radius_scale},
             {edge, 1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, smoothing_r},
             {floor_strength(scene, PictureEffectKind::Shadows),
-             floor_strength(scene, PictureEffectKind::Caustics), 0, 0},
+             floor_strength(scene, PictureEffectKind::Caustics), listed ? 0 : soft_level, 0},
             {}};
   for (std::size_t k = 0; k < 3; ++k)
     block_.absorption[k] = static_cast<float>(scene.light.absorption_per_m[k]);

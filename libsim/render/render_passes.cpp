@@ -147,7 +147,7 @@ void FluidRenderer::State::place_obstacles(const std::vector<BodyMotion>& motion
   for (const Pipe& pipe : pipes) {
     row(pipe.centre_m, pipe.radius_m);
     row(Vec3d{0, pipe.half_length_m, 0}, 2);  // pipe_kind of obstacles.glsl
-    row(pipe.turn, pipe.turn[3]);
+    row(Vec3d{}, 1);
   }
   const auto bytes = static_cast<GLsizeiptr>(rows.size() * sizeof rows[0]);
   poses.reserve(bytes);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "libsim/render/render_passes.hpp"
@@ -18,6 +17,7 @@ constexpr int sky_px = 512;
 constexpr GLuint sky_unit = 1;  // of surroundings.glsl
 // The water is splatted larger than the particles; a pipe hides it up to this many radii of the mouth.
 constexpr double pipe_per_mouth = 1.3;
+constexpr double pipe_diameters = 40;  // length above the tank
 constexpr double room_per_tank = 1.2, height_per_tank = 2.0, least_hall_m = 2.5;
 
 }  // namespace
@@ -25,14 +25,12 @@ constexpr double room_per_tank = 1.2, height_per_tank = 2.0, least_hall_m = 2.5;
 std::vector<Pipe> pipes_of(const Scene& scene) {
   std::vector<Pipe> out;
   for (const Nozzle& nozzle : scene.nozzles) {
-    const double radius = pipe_per_mouth * nozzle.diameter_m / 2;
-    const auto& [x, y, z] = nozzle.position_m;
-    const double top = std::max(scene.tank_size_m[1], y) + 2 * nozzle.diameter_m;
-    const double behind = -1.5 * nozzle.diameter_m - radius;
-    const double half = std::numbers::sqrt2 / 2;
-    out.push_back({{x, (y + top + radius) / 2, z}, radius, (top + radius - y) / 2});
-    out.push_back({{x, top, (z + behind) / 2}, radius, (z - behind) / 2, {half, 0, 0, half}});
-    out.push_back({{x, (top + radius) / 2, behind}, radius, (top + radius) / 2});
+    const double mouth = nozzle.position_m[1];
+    const double half =
+        (std::max(scene.tank_size_m[1], mouth) - mouth) / 2 + pipe_diameters * nozzle.diameter_m / 2;
+    out.push_back({{nozzle.position_m[0], mouth + half, nozzle.position_m[2]},
+                   pipe_per_mouth * nozzle.diameter_m / 2,
+                   half});
   }
   return out;
 }
@@ -60,7 +58,7 @@ void Surroundings::paint_sky(int seed) {
   glTextureStorage2D(sky_, std::bit_width(static_cast<unsigned>(sky_px)), GL_RGBA16F, sky_px, sky_px);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTextureParameteri(sky_, axis, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(sky_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(sky_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   const GlProgram paint = compute_program("environment.comp");
   paint.use();
   glUniform1ui(paint.uniform("seed"), static_cast<GLuint>(seed));

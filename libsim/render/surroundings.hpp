@@ -10,15 +10,14 @@
 
 namespace sim {
 
-/// A cylinder with flat ends along its own y axis.
+/// An upright cylinder with flat ends.
 struct Pipe {
   Vec3d centre_m{};
   double radius_m = 0, half_length_m = 0;
-  std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
 };
 
-/// The pipes through which the nozzles are fed, so that no jet begins in mid-air: from each mouth up over the
-/// tank's rim, over the wall at low z, and down to the ground. Three per nozzle. Only pictures have them.
+/// The pipes through which the nozzles are fed, so that no jet begins in mid-air: from each mouth upwards,
+/// into the ceiling of a room, or to a height of many diameters. Only pictures have them.
 std::vector<Pipe> pipes_of(const Scene& scene);
 
 /// Environment of a scene (SceneLight::environment) for shaders/surroundings.glsl. Needs a current context at
