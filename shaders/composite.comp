@@ -18,6 +18,7 @@ layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
+const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
 
 float water_length(vec2 xy) {
@@ -32,18 +33,20 @@ float water_length(vec2 xy) {
 
 // Light that the surface mirrors towards the eye. A ray that is mirrored downwards meets water again: its light is
 // that of the direction mirrored once more, less what the water takes.
-vec3 mirrored_light(vec3 position, vec3 mirrored, float footprint_per_m, float distance_m) {
+vec3 mirrored_light(vec3 position, vec3 mirrored, float width_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
   if (met.at < never) return obstacle_light(met);
 #endif
   const float kept = mirrored.y < 0.0 ? 0.5 : 1.0;
   const vec3 up = normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
-  const vec3 light = surroundings(position, up, 2.0 * footprint_per_m, distance_m);
+  const vec3 light = surroundings(position, up, width_per_m, 0.0);
   return kept * (light + vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0)));
 }
 
-vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float radius, float footprint_per_m, float distance_m) {
+// `bend`: how far the normal turns within the pixel. The pixel's footprint widens behind the surface by the angle by
+// which refraction then spreads the rays, and twice as fast as the normal turns for mirrored light.
+vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radius, float footprint_per_m, float distance_m) {
   const float facing = clamp(-dot(d, n), 0.0, 1.0);
   const float fresnel = reflected_share(facing) * smoothstep(0.0, thin_m, length_m);
   const vec3 inside = refract(d, n, into_water);
@@ -67,17 +70,18 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float radius, float fo
     onwards[wall] = -inside[wall];
     through += min(max(cross_tank(from, onwards).leave, 0.0), way);
   }
-  const vec3 behind = seen_from_inside(from, onwards, footprint_per_m, distance_m + way, framed);
+  const float wider = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop);
+  const vec3 behind = seen_from_inside(from, onwards, wider, footprint_per_m / wider * distance_m + way, framed);
   const vec3 kept = exp(-absorption.rgb * through);
   const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
-  return mix(body, mirrored_light(position, reflect(d, n), footprint_per_m, distance_m), fresnel);
+  return mix(body, mirrored_light(position, reflect(d, n), footprint_per_m + 2.0 * bend), fresnel);
 }
 
 // The normal of a pixel for shading, in eye space. Three normals are replaced: beside a jump of depth, where the
 // difference of neighbours says little, by the mean of the neighbours on the same layer; at the picture's border, to
 // which the depth filter reaches from one side only, by that of a pixel further inside; and one that faces away from
-// the eye, by the nearest that does not.
-vec3 shading_normal(ivec2 pixel, int at, vec3 ray) {
+// the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to the next.
+vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
   vec3 n = normals[at].xyz;
   int around = 0;
@@ -86,7 +90,11 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray) {
     const float there = nearness[near.y * size.x + near.x];
     around += int(there > 0.0 && abs(there - centre) < reach);
   }
-  if (around < 9) {
+  bend = most_bend;
+  if (around == 9) {
+    const ivec2 next = min(pixel + 1, size.xy - 1);
+    bend = min(max(length(normals[pixel.y * size.x + next.x].xyz - n), length(normals[next.y * size.x + pixel.x].xyz - n)), most_bend);
+  } else {
     for (int k = 0; k < 9; ++k) {
       const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
       const int there = near.y * size.x + near.x;
@@ -171,10 +179,11 @@ void main() {
   if (is_water) {
     const float distance_m = per_depth / nearness[at];
     const float splatted = max(radius * origin.w, 1e-4);
-    const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray);
+    float bend;
+    const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray, bend);
     const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, splatted);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
-    vec3 wet = water(position, d, n, water_length(xy), splatted, footprint_per_m, distance_m);
+    vec3 wet = water(position, d, n, bend, water_length(xy), splatted, footprint_per_m, distance_m);
 #ifdef FOAM
     wet = mix(wet, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
     foam_normal = n;

@@ -15,6 +15,7 @@ namespace sim {
 namespace {
 
 constexpr int block_px = 16;        // equal to block_px of occlusion.glsl
+constexpr float usual_shadow = 0.7F;  // strength of shadows that only [light] asks for
 constexpr GLuint tile_groups = 64;  // work groups per footprint wider than group_px; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
@@ -87,7 +88,7 @@ std::string obstacle_defines(const Scene& scene) {
 float floor_strength(const Scene& scene, PictureEffectKind kind) {
   const bool listed = std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
                                   [&](const PictureEffect& effect) { return effect.kind == kind; });
-  if (!listed && kind == PictureEffectKind::Shadows) return scene.light.shadow ? 1 : 0;
+  if (!listed && kind == PictureEffectKind::Shadows) return scene.light.shadow ? usual_shadow : 0;
   return strength_of(scene.picture_effects, kind);
 }
 

@@ -85,6 +85,7 @@ class FloorLightGl : public render_test::RenderGl {
     sim::Scene scene;
     scene.tank_size_m = {4, 3, 4};
     scene.picture_effects = std::move(effects);
+    scene.light.shadow = false;
     return scene;
   }
   static sim::Scene with_ball(sim::Scene scene, double y, double radius) {
@@ -141,7 +142,7 @@ TEST_F(FloorLightGl, HasPassesOnlyWhereTheSceneListsThem) {
   for (const PictureEffect& effect : {shadows, caustics}) {
     const auto map = drawn(tank({effect}), pool);
     auto expected = without;
-    expected.insert(expected.end() - 1, {"light", sim::traits_of(effect.kind).word});
+    expected.insert(expected.end() - 2, {"light", sim::traits_of(effect.kind).word});
     EXPECT_EQ(passes, expected);
     EXPECT_EQ(map.open.empty(), effect.kind != PictureEffectKind::Shadows);
     EXPECT_EQ(map.gathered.empty(), effect.kind != PictureEffectKind::Caustics);
