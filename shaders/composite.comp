@@ -196,6 +196,7 @@ void main() {
   light = mix(light, foam_light(foam_normal), foam.x);
   cover[2 * at] = floatBitsToUint(is_water ? foam.x : 0.0);  // for edges.comp
 #endif
+  if (frame > 0.5) nearest = max(nearest, per_depth / frame_at);
   shaded[at] = packed_light(mix(light, frame_colour, frame));
   shown[at] = nearest;
 }
