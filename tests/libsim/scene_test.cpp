@@ -187,6 +187,10 @@ TEST(Scene, ErrorsNameThePlaceAndTheMend) {
               testing::HasSubstr("outside the tank"));
   EXPECT_THAT(error_of(text.substr(0, text.size() / 2)), testing::HasSubstr("scene.toml:"));
   EXPECT_THAT(error_of(replaced(text, "frame = 60", "frame = 0")), testing::HasSubstr("order the gaze keys"));
+  for (const char* light :
+       {"environment = \"space\"", "seed = -1", "seed = 0.5", "absorption_per_m = [1.0, 2.0]",
+        "absorption_per_m = [1.0, 2.0, -3.0]", "shadow = 1", "lamp = 3"})
+    EXPECT_THAT(error_of(text + "\n[light]\n" + light + "\n"), testing::HasSubstr("'light.")) << light;
   EXPECT_THAT(error_of(replaced(text, "7.2, 12.8", "nan, 12.8")), testing::HasSubstr("must be finite"));
 }
 

@@ -162,8 +162,8 @@ TEST_F(PictureGl, WaterChangesThePictureOnlyWhereItIs) {
       }
       // A smooth outline reaches into the pixels beside it.
       const auto is_fluid = [&](int to_x, int to_y) {
-        return std::isfinite(g.depth[static_cast<std::size_t>(120 * std::clamp(to_y, 0, 79) +
-                                                              std::clamp(to_x, 0, 119))]);
+        return std::isfinite(
+            g.depth[static_cast<std::size_t>(120 * std::clamp(to_y, 0, 79) + std::clamp(to_x, 0, 119))]);
       };
       const bool beside =
           is_fluid(x - 1, y) || is_fluid(x + 1, y) || is_fluid(x, y - 1) || is_fluid(x, y + 1);
