@@ -72,7 +72,6 @@ class SurroundingsGl : public render_test::RenderGl {
         }
       }
     }
-    std::printf("off %f over %d\n", std::sqrt(sum / values), values);
     return std::sqrt(sum / values);
   }
   static const std::uint8_t* at(const sim::Image& image, int x, int y, std::size_t c = 0) {
@@ -145,7 +144,7 @@ TEST_F(SurroundingsGl, PatternsInTheDistanceFadeToTheirMean) {
     const auto picture = drawn(scene, {}, sim::make_view(camera, px, px));
     const auto finer = drawn(scene, {}, sim::make_view(camera, 4 * px, 4 * px));
     const auto on_the_floor = [&](int, int y) { return y > 6 * px / 10; };
-    // Measured: 2.0 and 3.2 levels. Without the filter across lines (footprint 0) 17 and 14.
+    // Measured: 2.2 and 1.3 levels. Without the average over the footprint 17 and 12.
     EXPECT_LT(off_finer(picture, finer, 4, on_the_floor), 5) << px;
   }
 }
@@ -181,15 +180,30 @@ TEST_F(SurroundingsGl, OutlinesOfWaterAreSmooth) {
   const auto outline = on_outlines(gbuffer, 160, 120, 4);
   const auto counts = [&](int x, int y) { return outline[static_cast<std::size_t>(160 * y + x)]; };
   EXPECT_GT(std::count(outline.begin(), outline.end(), true), 100);
-  EXPECT_LT(off_finer(picture, finer, 4, counts), 14);
+  // Measured: 12.8 levels, and 22.7 without smoothing.
+  EXPECT_LT(off_finer(picture, finer, 4, counts), 16);
 }
 
-TEST_F(SurroundingsGl, OutlinesOfTheTankAreSmooth) {
+TEST_F(SurroundingsGl, OutlinesOfSolidsAreSmooth) {
   auto scene = lit({});
   scene.light.shadow = false;
-  const auto picture = drawn(scene, {}, over_the_tank(160, 120));
-  const auto finer = drawn(scene, {}, over_the_tank(640, 480));
-  EXPECT_LT(off_finer(picture, finer, 4, [](int, int) { return true; }), 5);
+  sim::Obstacle ball;
+  ball.radius_m = 0.8;
+  ball.start.centre_m = {0.3, 0.6, -3};
+  scene.obstacles = {ball};
+  const auto coarse = render_test::view_along_z(160, 120), fine = render_test::view_along_z(640, 480);
+  const auto picture = drawn(scene, {}, coarse), finer = drawn(scene, {}, fine);
+  const auto counts = [&](int x, int y) {
+    int hits = 0;
+    for (int k = 0; k < 16; ++k) {
+      const int px = 4 * x + k % 4, py = 4 * (119 - y) + k / 4;
+      hits += render_test::chord_at({0.3F, 0.6F, -3, 0.8F}, fine, static_cast<std::size_t>(640 * py + px))
+                  .has_value();
+    }
+    return hits > 0 && hits < 16;
+  };
+  // Measured: 15.8 levels, and 35.1 without smoothing.
+  EXPECT_LT(off_finer(picture, finer, 4, counts), 20);
 }
 
 TEST_F(SurroundingsGl, ADropShowsNoFrameOfTheTank) {
