@@ -20,6 +20,9 @@ const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by d
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
+const float least_share = 0.06;  // reflected share from which mirrored rays look for water in the picture
+const int most_steps = 12;       // of such a ray
+const float first_step_r = 3.0, step_growth = 1.35;
 
 float water_length(vec2 xy) {
   const vec2 g = xy / thickness_rule.z - 0.5;
@@ -31,17 +34,43 @@ float water_length(vec2 xy) {
   return mix(a, b, f.y) * thickness_rule.y;
 }
 
+// Water in the picture that a mirrored ray meets: x: how much of the ray it takes, 0 to 1; y: its length along the
+// pixel's ray, m. The ray is followed in steps that grow with the way; it meets water where a step ends not far behind
+// the water that the picture shows there.
+vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
+  const vec3 from = (world_to_eye * vec4(position, 1.0)).xyz, along = mat3(world_to_eye) * mirrored;
+  float way = first_step_r * radius, before = 0.0;
+  for (int k = 0; k < most_steps; ++k, before = way, way *= step_growth) {
+    vec3 at = from + way * along;
+    if (-at.z < origin.z) return vec2(0.0);
+    vec2 xy = (at.xy / -at.z - rays.yw) / rays.xz;
+    if (any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) return vec2(0.0);
+    float there = nearness[int(xy.y) * size.x + int(xy.x)];
+    float behind = -at.z - (there > 0.0 ? 1.0 / there : 1e9);
+    if (behind < 0.0 || behind > way - before + 2.0 * radius) continue;
+    const vec2 to_border = min(xy, vec2(size.xy) - xy) / vec2(size.xy);
+    const float inside = smoothstep(0.0, 0.1, min(to_border.x, to_border.y));
+    return vec2(inside * (1.0 - smoothstep(0.7, 1.0, float(k) / float(most_steps))), water_length(xy));
+  }
+  return vec2(0.0);
+}
+
 // Light that the surface mirrors towards the eye. A ray that is mirrored downwards meets water again: its light is
 // that of the direction mirrored once more, less what the water takes.
-vec3 mirrored_light(vec3 position, vec3 mirrored, float width_per_m) {
+vec3 mirrored_light(vec3 position, vec3 mirrored, float share, float radius, float width_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
   if (met.at < never) return obstacle_light(met);
 #endif
   const float kept = mirrored.y < 0.0 ? 0.5 : 1.0;
   const vec3 up = normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
-  const vec3 light = surroundings(position, up, width_per_m, 0.0);
-  return kept * (light + vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0)));
+  vec3 light = surroundings(position, up, width_per_m, 0.0);
+  light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
+  if (share > least_share) {
+    const vec2 ahead = water_ahead(position, mirrored, radius);
+    light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
+  }
+  return kept * light;
 }
 
 // `bend`: how far the normal turns within the pixel. The pixel's footprint widens behind the surface by the angle by
@@ -74,7 +103,7 @@ vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radi
   const vec3 behind = seen_from_inside(from, onwards, wider, footprint_per_m / wider * distance_m + way, framed);
   const vec3 kept = exp(-absorption.rgb * through);
   const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
-  return mix(body, mirrored_light(position, reflect(d, n), footprint_per_m + 2.0 * bend), fresnel);
+  return mix(body, mirrored_light(position, reflect(d, n), fresnel, radius, footprint_per_m + 2.0 * bend), fresnel);
 }
 
 // The normal of a pixel for shading, in eye space. Three normals are replaced: beside a jump of depth, where the
