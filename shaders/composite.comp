@@ -97,7 +97,7 @@ vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radi
   if (to_wall > 0.95 && wall != 1 && room == max(crossing.leave, 0.0) && inside[wall] * inside[wall] < no_way_out) {
     onwards = inside;
     onwards[wall] = -inside[wall];
-    through += min(max(cross_tank(from, onwards).leave, 0.0), way);
+    through += min(from.y / max(-inside.y, 0.05), way);
   }
   const float wider = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop);
   const vec3 behind = seen_from_inside(from, onwards, wider, footprint_per_m / wider * distance_m + way, framed);
@@ -112,18 +112,15 @@ vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radi
 // the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to the next.
 vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
+  const ivec2 low = max(pixel - 1, ivec2(0)), high = min(pixel + 1, size.xy - 1);
+  const int row = pixel.y * size.x;
+  const vec4 beside = vec4(nearness[row + low.x], nearness[row + high.x], nearness[low.y * size.x + pixel.x],
+                           nearness[high.y * size.x + pixel.x]);
   vec3 n = normals[at].xyz;
-  int around = 0;
-  for (int k = 0; k < 9; ++k) {
-    const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
-    const float there = nearness[near.y * size.x + near.x];
-    around += int(there > 0.0 && abs(there - centre) < reach);
-  }
-  bend = most_bend;
-  if (around == 9) {
-    const ivec2 next = min(pixel + 1, size.xy - 1);
-    bend = min(max(length(normals[pixel.y * size.x + next.x].xyz - n), length(normals[next.y * size.x + pixel.x].xyz - n)), most_bend);
+  if (all(lessThan(abs(beside - centre), vec4(reach)))) {
+    bend = min(0.7 * length(normals[high.y * size.x + high.x].xyz - n), most_bend);
   } else {
+    bend = most_bend;
     for (int k = 0; k < 9; ++k) {
       const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
       const int there = near.y * size.x + near.x;

@@ -1,8 +1,9 @@
 // Paints the sky into a texture: one invocation per texel (shaders/surroundings.glsl has the projection). Clouds are
 // value noise on a flat layer, in places that follow from the scene's seed.
 #include "light.glsl"
+#include "sky.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(rgba16f, binding = 0) writeonly uniform image2D sky;
+layout(rgba8, binding = 0) writeonly uniform image2D sky;
 uniform uint seed;
 
 uint scrambled(uint word) {
@@ -48,5 +49,5 @@ void main() {
   // A cloud is bright on the side where less cloud stands before the sun.
   const float lit = clamp(0.75 + 0.6 * (density(layer) - density(layer + 0.22 * sun.xz / sun.y)), 0.0, 1.0);
   light = mix(light, mix(vec3(0.50, 0.55, 0.63), vec3(1.05, 1.03, 1.0), lit) + 0.3 * pow(towards_sun, 24.0), 0.92 * cloud);
-  imageStore(sky, cell, vec4(light, 1.0));
+  imageStore(sky, cell, vec4(sqrt(light / brightest), 1.0));
 }

@@ -60,6 +60,7 @@ vec3 surroundings(vec3 o, vec3 d, float width_per_m, float travelled) {
   return wall;
 }
 #else
+#include "sky.glsl"
 layout(binding = 1) uniform sampler2D sky;  // upper half of all directions; octahedral, y up
 
 const float texel = 0.0055;  // mean angle between neighbouring texels of the sky, rad
@@ -67,7 +68,9 @@ const float texel = 0.0055;  // mean angle between neighbouring texels of the sk
 vec3 surroundings(vec3 o, vec3 d, float width_per_m, float travelled) {
   if (d.y > 0.0) {
     const vec2 p = d.xz / (abs(d.x) + abs(d.z) + d.y);
-    return textureLod(sky, 0.5 + 0.5 * vec2(p.x + p.y, p.x - p.y), log2(max(width_per_m / texel, 1.0))).rgb;
+    const float level = log2(max(width_per_m / texel, 1.0));
+    const vec3 root = textureLod(sky, 0.5 + 0.5 * vec2(p.x + p.y, p.x - p.y), level).rgb;
+    return brightest * root * root;
   }
   const float at = max(o.y, 0.0) / max(-d.y, 1e-4);
   const vec3 p = o + at * d;

@@ -87,7 +87,8 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   glTextureStorage2D(sunlight_, levels_of(std::max(floor_x, floor_z)), GL_RGBA16F, floor_x, floor_z);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTextureParameteri(sunlight_, axis, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(sunlight_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(sunlight_, GL_TEXTURE_MIN_FILTER,
+                      listed ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST);
 }
 
 FloorLight::~FloorLight() { glDeleteTextures(1, &sunlight_); }

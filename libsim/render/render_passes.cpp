@@ -14,9 +14,9 @@ namespace sim {
 
 namespace {
 
-constexpr int block_px = 16;        // equal to block_px of occlusion.glsl
+constexpr int block_px = 16;          // equal to block_px of occlusion.glsl
 constexpr float usual_shadow = 0.7F;  // strength of shadows that only [light] asks for
-constexpr GLuint tile_groups = 64;  // work groups per footprint wider than group_px; a multiple of 8
+constexpr GLuint tile_groups = 64;    // work groups per footprint wider than group_px; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
 struct ViewBlock {

@@ -55,14 +55,14 @@ Surroundings::Surroundings(const Scene& scene) {
 
 void Surroundings::paint_sky(int seed) {
   glCreateTextures(GL_TEXTURE_2D, 1, &sky_);
-  glTextureStorage2D(sky_, std::bit_width(static_cast<unsigned>(sky_px)), GL_RGBA16F, sky_px, sky_px);
+  glTextureStorage2D(sky_, std::bit_width(static_cast<unsigned>(sky_px)), GL_RGBA8, sky_px, sky_px);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTextureParameteri(sky_, axis, GL_CLAMP_TO_EDGE);
   glTextureParameteri(sky_, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   const GlProgram paint = compute_program("environment.comp");
   paint.use();
   glUniform1ui(paint.uniform("seed"), static_cast<GLuint>(seed));
-  glBindImageTexture(0, sky_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(0, sky_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   dispatch_pixels(sky_px, sky_px);
   glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
