@@ -20,9 +20,9 @@ const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by d
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
-const float least_share = 0.06;  // reflected share from which mirrored rays look for water in the picture
-const int most_steps = 12;       // of such a ray
-const float first_step_r = 3.0, step_growth = 1.35;
+const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
+const int most_steps = 8;        // of such a ray
+const float first_step_r = 3.0, step_growth = 1.6;
 
 float water_length(vec2 xy) {
   const vec2 g = xy / thickness_rule.z - 0.5;
@@ -67,17 +67,24 @@ vec3 mirrored_light(vec3 position, vec3 mirrored, float share, float radius, flo
   vec3 light = surroundings(position, up, width_per_m, 0.0);
   light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
   if (share > least_share) {
-    const vec2 ahead = water_ahead(position, mirrored, radius);
+    vec2 ahead = water_ahead(position, mirrored, radius);
+    ahead.x *= smoothstep(least_share, 2.0 * least_share, share);
     light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
   }
   return kept * light;
 }
 
-// `bend`: how far the normal turns within the pixel. The pixel's footprint widens behind the surface by the angle by
-// which refraction then spreads the rays, and twice as fast as the normal turns for mirrored light.
-vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radius, float footprint_per_m, float distance_m) {
-  const float facing = clamp(-dot(d, n), 0.0, 1.0);
-  const float fresnel = reflected_share(facing) * smoothstep(0.0, thin_m, length_m);
+// A ray that goes on behind the surface, and what becomes of its light on the way to the eye: light * kept + added.
+struct Behind {
+  vec3 from, along;
+  float footprint_per_m, travelled, framed;  // as in seen()
+  vec3 kept, added;
+};
+
+// The way of the eye's ray d through the water. `bend`: how far the normal n turns within the pixel; the footprint
+// widens by the angle by which refraction then spreads the rays.
+Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radius, float footprint_per_m,
+                 float distance_m) {
   const vec3 inside = refract(d, n, into_water);
   const Crossing crossing = cross_tank(position, inside);
   float room = max(crossing.leave, 0.0);
@@ -88,22 +95,23 @@ vec3 water(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radi
   // Light leaves a pool through the tank's side or floor along `inside`, a sheet along d, and a drop turned once more.
   const float to_wall = clamp(length_m / max(room, 1e-3), 0.0, 1.0);
   const float as_drop = (1.0 - smoothstep(1.0, 2.5, 0.5 * length_m / radius)) * (1.0 - to_wall);
-  const vec3 out_direction = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
-  const float framed = smoothstep(0.5, 0.9, to_wall);
-  vec3 from = position + (way - 1e-3) * inside, onwards = out_direction;
+  Behind behind;
+  behind.from = position + (way - 1e-3) * inside;
+  behind.along = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
   float through = way;
   // A side wall that light meets too slantwise to leave the water mirrors it to the floor.
   const int wall = crossing.leave_axis;
   if (to_wall > 0.95 && wall != 1 && room == max(crossing.leave, 0.0) && inside[wall] * inside[wall] < no_way_out) {
-    onwards = inside;
-    onwards[wall] = -inside[wall];
-    through += min(from.y / max(-inside.y, 0.05), way);
+    behind.along = inside;
+    behind.along[wall] = -inside[wall];
+    through += min(behind.from.y / max(-inside.y, 0.05), way);
   }
-  const float wider = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop);
-  const vec3 behind = seen_from_inside(from, onwards, wider, footprint_per_m / wider * distance_m + way, framed);
-  const vec3 kept = exp(-absorption.rgb * through);
-  const vec3 body = behind * kept + in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
-  return mix(body, mirrored_light(position, reflect(d, n), fresnel, radius, footprint_per_m + 2.0 * bend), fresnel);
+  behind.footprint_per_m = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop);
+  behind.travelled = footprint_per_m / behind.footprint_per_m * distance_m + way;
+  behind.framed = smoothstep(0.5, 0.9, to_wall);
+  behind.kept = exp(-absorption.rgb * through);
+  behind.added = in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
+  return behind;
 }
 
 // The normal of a pixel for shading, in eye space. Three normals are replaced: beside a jump of depth, where the
@@ -152,7 +160,7 @@ vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius) {
 // Opacity of a fluid pixel whose particle is smaller than the pixel: its share of the pixel, and more where its
 // neighbours hold water too.
 float small_cover(ivec2 pixel, float nearness_here, float radius) {
-  const float radius_px = radius * origin.w * nearness_here / rays.x;
+  const float radius_px = radius * nearness_here / rays.x;
   if (radius_px > 0.6) return 1.0;
   int fluid = 0;
   for (int y = -1; y <= 1; ++y) {
@@ -194,30 +202,36 @@ void main() {
   if (!is_water) nearest = per_depth / obstacle_at;
   if (obstacle_at < frame_at) frame = 0.0;
 #endif
-  const float radius = normals[at].w;
-  const float water_cover = is_water ? small_cover(pixel, nearness[at], radius) : 0.0;
-  vec3 light = vec3(0.0);
 #ifdef FOAM
   const vec2 foam = foam_cover(at);
   vec3 foam_normal = vec3(0.0, 1.0, 0.0);
 #endif
-  if (water_cover < 1.0) light = seen(crossing, eye, d, footprint_per_m);
+  Behind behind = Behind(eye, d, footprint_per_m, 0.0, 1.0, vec3(1.0), vec3(0.0));
+  vec3 mirrored = vec3(0.0);
+  float share = 0.0;
   if (is_water) {
-    const float distance_m = per_depth / nearness[at];
-    const float splatted = max(radius * origin.w, 1e-4);
+    const float radius = max(normals[at].w * origin.w, 1e-4), distance_m = per_depth / nearness[at];
     float bend;
     const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray, bend);
-    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, splatted);
+    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, radius);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
-    vec3 wet = water(position, d, n, bend, water_length(xy), splatted, footprint_per_m, distance_m);
+    const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
+    share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
+    mirrored = mirrored_light(position, reflect(d, n), share, radius, footprint_per_m + 2.0 * bend);
+    const Behind wet = refracted(position, d, n, bend, length_m, radius, footprint_per_m, distance_m);
+    if (opacity == 1.0) behind = wet;
+    behind.kept = mix(vec3(1.0), wet.kept, opacity);
+    behind.added = opacity * wet.added;
 #ifdef FOAM
-    wet = mix(wet, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
+    behind.kept *= 1.0 - 0.8 * foam.y;
+    behind.added = mix(behind.added, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);
     foam_normal = n;
 #endif
-    light = mix(light, wet, water_cover);
     // Only water above the tank's rim, or leaked water, may hide the near side of the frame.
     if ((position.y > tank.y || tank.w == 0.0) && distance_m < 0.999 * frame_at) frame = 0.0;
   }
+  vec3 light = seen(behind.from, behind.along, behind.footprint_per_m, behind.travelled, behind.framed);
+  light = mix(light * behind.kept + behind.added, mirrored, share);
 #ifdef FOAM
   light = mix(light, foam_light(foam_normal), foam.x);
   cover[2 * at] = floatBitsToUint(is_water ? foam.x : 0.0);  // for edges.comp

@@ -92,18 +92,16 @@ void main() {
   const ivec2 sides[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
   const uint own = outlines[at], left = bits_at(pixel - ivec2(1, 0)), below = bits_at(pixel - ivec2(0, 1));
   const bvec4 parted = bvec4((own & 1u) != 0u, (left & 1u) != 0u, (own & 2u) != 0u, (below & 2u) != 0u);
-  if (any(parted)) {
-    vec3 sum = vec3(0.0);
-    float shares = 0.0;
-    for (int k = 0; k < 4; ++k) {
-      if (!parted[k]) continue;
-      const ivec2 there = pixel + sides[k];
-      const float share = all(parted) ? alone : share_beyond(pixel, sides[k]);
-      sum += share * unpacked_light(shaded[there.y * size.x + there.x]);
-      shares += share;
-    }
-    const float kept = max(1.0 - shares, 0.25);
-    light = (kept * light + sum) / (kept + shares);
+  vec3 sum = vec3(0.0);
+  float shares = 0.0;
+  for (int k = any(parted) ? 0 : 4; k < 4; ++k) {
+    if (!parted[k]) continue;
+    const ivec2 there = pixel + sides[k];
+    const float share = all(parted) ? alone : share_beyond(pixel, sides[k]);
+    sum += share * unpacked_light(shaded[there.y * size.x + there.x]);
+    shares += share;
   }
+  const float kept = max(1.0 - shares, 0.25);
+  light = (kept * light + sum) / (kept + shares);
   imageStore(picture, pixel + ivec2(origin.xy), vec4(encode_srgb(light), 1.0));
 }

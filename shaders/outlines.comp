@@ -6,21 +6,20 @@ layout(std430, binding = 0) readonly buffer Shown { float shown[]; };
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) writeonly buffer Outlines { uint outlines[]; };  // bit 0: to the right; bit 1: above
 
-const float least_jump_r = 1.2;     // smallest jump of depth between layers of water, splatted radii
-const float least_jump = 0.03;      // the same between obstacles, share of the depth
+const float least_jump_r = 1.2;  // smallest jump of depth between layers of water, splatted radii
+const float least_jump = 0.03;   // the same between obstacles, share of the depth
 
 int index_of(ivec2 pixel) {
   const ivec2 inside = clamp(pixel, ivec2(0), size.xy - 1);
   return inside.y * size.x + inside.x;
 }
 
-bool is_outline(ivec2 pixel, ivec2 step, float here) {
+bool is_outline(ivec2 pixel, ivec2 step, float here, float radius) {
   if (any(greaterThanEqual(pixel + step, size.xy))) return false;
-  const int next = index_of(pixel + step);
-  const float there = shown[next];
+  const float there = shown[index_of(pixel + step)];
   if (here == there) return false;
   if (here == 0.0 || there == 0.0) return true;
-  const float radius = max(normals[index_of(pixel)].w, normals[next].w) * origin.w, nearer = max(here, there);
+  const float nearer = max(here, there);
   const float least = nearer * (radius > 0.0 ? least_jump_r * radius * nearer : least_jump);
   const float jump = there - here;
   if (abs(jump) <= least) return false;
@@ -33,6 +32,7 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, size.xy))) return;
   const int at = pixel.y * size.x + pixel.x;
-  const float here = shown[at];
-  outlines[at] = uint(is_outline(pixel, ivec2(1, 0), here)) | uint(is_outline(pixel, ivec2(0, 1), here)) << 1;
+  const float here = shown[at], radius = normals[at].w * origin.w;
+  outlines[at] = uint(is_outline(pixel, ivec2(1, 0), here, radius)) |
+                 uint(is_outline(pixel, ivec2(0, 1), here, radius)) << 1;
 }

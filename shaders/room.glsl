@@ -55,31 +55,6 @@ const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
 // covers.
 float frame_cover(vec3 p, int axis, float width) { return strip(edge_distance(p, axis), frame_m, width); }
 
-// Light that arrives along the ray d at point o inside the tank. `framed`: opacity of the tank's frame, 0 to 1.
-vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) {
-  const Crossing c = cross_tank(o, d);
-#ifdef OBSTACLES
-  const Meeting met = meet_obstacles(o, d);
-  if (met.at < never) return obstacle_light(met);
-#endif
-  const vec3 p = o + max(c.leave, 0.0) * d;
-  const float width = footprint_per_m * (travelled + max(c.leave, 0.0));
-  if (c.leave_axis == 1 && d.y < 0.0) {
-    vec3 below = tiles(p, d, width);
-#ifdef LIT_FLOOR
-    below *= floor_light(p, d, width);
-#endif
-    return mix(below, frame_colour, framed * frame_cover(p, 1, width));
-  }
-  const vec3 beyond = surroundings(p, d, footprint_per_m, travelled + max(c.leave, 0.0));
-  const float frame = framed * frame_cover(p, c.leave_axis, width);
-  const bool above = c.leave_axis == 1;
-  if (above && absorption.w == 0.0) return mix(beyond, frame_colour, frame);
-  const float mark = above ? 0.0 : strips(p.y, 0.012, 1.0, width) * 0.35;
-  const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
-  return mix(glass, frame_colour, frame);
-}
-
 // Share of the pixel that the frame on the tank's near side covers. `at`: distance to that side along the ray, m; 0
 // if the eye is inside the tank or the ray misses it.
 float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at) {
@@ -89,13 +64,29 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
   return frame_cover(o + c.enter * d, c.enter_axis, footprint_per_m * c.enter);
 }
 
-// Light that arrives along the ray d at any point o, without the tank's frame on the side towards o.
-vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
+// Light that arrives along the ray d at point o, without the tank's frame on the side towards o. `framed`: opacity of
+// the frame on the far side, 0 to 1; `travelled`: way of the ray before o, m.
+vec3 seen(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);
   if (met.at < never) return obstacle_light(met);
 #endif
-  if (c.leave <= max(c.enter, 0.0)) return surroundings(o, d, footprint_per_m, 0.0);
-  if (c.enter <= 0.0) return seen_from_inside(o, d, footprint_per_m, 0.0, 1.0);
-  return seen_from_inside(o + c.enter * d + 1e-4 * d, d, footprint_per_m, c.enter, 1.0);
+  const Crossing c = cross_tank(o, d);
+  const bool through = c.leave > max(c.enter, 0.0) - 2e-3;  // the ray passes the tank, or begins in it
+  const float way = through ? max(c.leave, 0.0) : 0.0, width = footprint_per_m * (travelled + way);
+  const vec3 p = o + way * d;
+  const float frame = through ? framed * frame_cover(p, c.leave_axis, width) : 0.0;
+  if (through && c.leave_axis == 1 && d.y < 0.0) {
+    vec3 below = tiles(p, d, width);
+#ifdef LIT_FLOOR
+    below *= floor_light(p, d, width);
+#endif
+    return mix(below, frame_colour, frame);
+  }
+  const vec3 beyond = surroundings(p, d, footprint_per_m, travelled + way);
+  const bool above = c.leave_axis == 1;
+  if (!through || (above && absorption.w == 0.0)) return mix(beyond, frame_colour, frame);
+  const float mark = above ? 0.0 : strips(p.y, 0.012, 1.0, width) * 0.35;
+  const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
+  return mix(glass, frame_colour, frame);
 }
