@@ -1,5 +1,5 @@
-// Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Leaves linear light and the
-// nearness of what each pixel shows, from which edges.comp makes the picture.
+// Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Writes sRGB. Also leaves linear
+// light and the nearness of what each pixel shows, from which edges.comp smooths outlines.
 #include "view.glsl"
 #include "room.glsl"
 #include "shaded.glsl"
@@ -13,6 +13,7 @@ layout(std430, binding = 3) buffer Cover { uint cover[]; };
 #else
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 #endif
+layout(rgba8, binding = 0) writeonly uniform image2D picture;
 layout(std430, binding = 6) writeonly buffer Shaded { uvec2 shaded[]; };
 layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
@@ -237,6 +238,8 @@ void main() {
   cover[2 * at] = floatBitsToUint(is_water ? foam.x : 0.0);  // for edges.comp
 #endif
   if (frame > 0.5) nearest = max(nearest, per_depth / frame_at);
-  shaded[at] = packed_light(mix(light, frame_colour, frame));
+  light = mix(light, frame_colour, frame);
+  shaded[at] = packed_light(light);
   shown[at] = nearest;
+  imageStore(picture, pixel + ivec2(origin.xy), vec4(encode_srgb(light), 1.0));
 }

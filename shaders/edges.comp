@@ -1,4 +1,4 @@
-// Smooths outlines and writes the picture in sRGB. Where an outline runs along rows or columns of pixels and steps
+// Smooths outlines in the picture; one work group per tile that outlines touch. Where an outline runs along rows or columns of pixels and steps
 // aside at its ends, the true outline is the line between the middles of the steps: each pixel that it crosses takes
 // the light of its neighbour beyond the outline, by the share that lies beyond (after Reshetnikov 2009).
 #include "view.glsl"
@@ -6,10 +6,7 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Shaded { uvec2 shaded[]; };
 layout(std430, binding = 1) readonly buffer Outlines { uint outlines[]; };
-#ifdef FOAM
-layout(std430, binding = 2) buffer Normals { vec4 normals[]; };
-layout(std430, binding = 3) buffer Cover { uint cover[]; };
-#endif
+#include "outline_tiles.glsl"
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
 const int most_steps = 16;      // pixels along an outline that are searched for its end, each way
@@ -51,50 +48,19 @@ float share_beyond(ivec2 pixel, ivec2 side) {
   return max(height, 0.0);
 }
 
-vec3 encode_srgb(vec3 c) {
-  const vec3 x = clamp(c, 0.0, 1.0);
-  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
-}
-
-#ifdef FOAM
-uint scrambled(uint word) {
-  word = (word ^ (word >> 16)) * 0x45d9f3bu;
-  word = (word ^ (word >> 16)) * 0x45d9f3bu;
-  return word ^ (word >> 16);
-}
-
-// A normal of foamy water for saliency, which reads the G-buffer: the smooth normal mixed with a random one by the
-// share `covered`. The random normals are distributed like those over the visible disc of a sphere.
-vec3 rough_normal(vec3 smooth_one, int at, float covered) {
-  const uint first = scrambled(uint(at)), second = scrambled(first + 1u);
-  const float squared = float(first >> 8) / 16777216.0, angle = 6.2831853 * float(second >> 8) / 16777216.0;
-  const vec3 bubble = vec3(sqrt(squared) * vec2(cos(angle), sin(angle)), sqrt(1.0 - squared));
-  const vec3 mixed = mix(smooth_one, bubble, covered);
-  return length(mixed) > 0.1 ? normalize(mixed) : smooth_one;
-}
-
-// Leaves the normals to saliency, and the foam's sums at 0 for the next picture.
-void leave_foam(int at) {
-  const float covered = uintBitsToFloat(cover[2 * at]);
-  cover[2 * at] = cover[2 * at + 1] = 0u;
-  if (covered > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, covered);
-}
-#endif
-
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  const uint across = uint(size.x + 15) / 16u, tile = tiles[gl_WorkGroupID.x];
+  const ivec2 pixel = ivec2(16, 8) * ivec2(tile % across, tile / across) + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(pixel, size.xy))) return;
   const int at = pixel.y * size.x + pixel.x;
   vec3 light = unpacked_light(shaded[at]);
-#ifdef FOAM
-  leave_foam(at);
-#endif
   const ivec2 sides[4] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
   const uint own = outlines[at], left = bits_at(pixel - ivec2(1, 0)), below = bits_at(pixel - ivec2(0, 1));
   const bvec4 parted = bvec4((own & 1u) != 0u, (left & 1u) != 0u, (own & 2u) != 0u, (below & 2u) != 0u);
+  if (!any(parted)) return;
   vec3 sum = vec3(0.0);
   float shares = 0.0;
-  for (int k = any(parted) ? 0 : 4; k < 4; ++k) {
+  for (int k = 0; k < 4; ++k) {
     if (!parted[k]) continue;
     const ivec2 there = pixel + sides[k];
     const float share = all(parted) ? alone : share_beyond(pixel, sides[k]);

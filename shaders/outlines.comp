@@ -1,10 +1,17 @@
 // Finds outlines: pixels whose right or upper neighbour shows another layer. Depth jumps there, and does not follow
-// the slope on either side.
+// the slope on either side. Lists the tiles of 16 x 8 px that an outline touches; a tile may be listed several times.
 #include "view.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Shown { float shown[]; };
+#ifdef FOAM
+layout(std430, binding = 1) buffer Normals { vec4 normals[]; };
+layout(std430, binding = 4) buffer Cover { uint cover[]; };  // share of the pixel that foam covers, and another word
+#else
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
+#endif
 layout(std430, binding = 2) writeonly buffer Outlines { uint outlines[]; };  // bit 0: to the right; bit 1: above
+#include "outline_tiles.glsl"
+shared uint touched;  // bit 0: this tile; bit 1: also the tile to the right; bit 2: also the tile above
 
 const float least_jump_r = 1.2;  // smallest jump of depth between layers of water, splatted radii
 const float least_jump = 0.03;   // the same between obstacles, share of the depth
@@ -28,11 +35,57 @@ bool is_outline(ivec2 pixel, ivec2 step, float here, float radius) {
   return min(abs(jump - on_this_side), abs(jump - on_that_side)) > least;
 }
 
+#ifdef FOAM
+uint scrambled(uint word) {
+  word = (word ^ (word >> 16)) * 0x45d9f3bu;
+  word = (word ^ (word >> 16)) * 0x45d9f3bu;
+  return word ^ (word >> 16);
+}
+
+// A normal of foamy water for saliency, which reads the G-buffer: the smooth normal mixed with a random one by the
+// share `covered`. The random normals are distributed like those over the visible disc of a sphere.
+vec3 rough_normal(vec3 smooth_one, int at, float covered) {
+  const uint first = scrambled(uint(at)), second = scrambled(first + 1u);
+  const float squared = float(first >> 8) / 16777216.0, angle = 6.2831853 * float(second >> 8) / 16777216.0;
+  const vec3 bubble = vec3(sqrt(squared) * vec2(cos(angle), sin(angle)), sqrt(1.0 - squared));
+  const vec3 mixed = mix(smooth_one, bubble, covered);
+  return length(mixed) > 0.1 ? normalize(mixed) : smooth_one;
+}
+
+// Leaves the normals to saliency, and the foam's sums at 0 for the next picture.
+void leave_foam(int at) {
+  const float covered = uintBitsToFloat(cover[2 * at]);
+  cover[2 * at] = cover[2 * at + 1] = 0u;
+  if (covered > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, covered);
+}
+#endif
+
+void list_tile(uvec2 tile, uvec2 count) {
+  if (any(greaterThanEqual(tile, count))) return;
+  tiles[atomicAdd(tile_groups.x, 1u)] = tile.y * count.x + tile.x;
+}
+
 void main() {
+  if (gl_LocalInvocationIndex == 0u) touched = 0u;
+  barrier();
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy))) return;
-  const int at = pixel.y * size.x + pixel.x;
-  const float here = shown[at], radius = normals[at].w * origin.w;
-  outlines[at] = uint(is_outline(pixel, ivec2(1, 0), here, radius)) |
-                 uint(is_outline(pixel, ivec2(0, 1), here, radius)) << 1;
+  if (all(lessThan(pixel, size.xy))) {
+    const int at = pixel.y * size.x + pixel.x;
+    const float here = shown[at], radius = normals[at].w * origin.w;
+    const uint bits = uint(is_outline(pixel, ivec2(1, 0), here, radius)) |
+                      uint(is_outline(pixel, ivec2(0, 1), here, radius)) << 1;
+    outlines[at] = bits;
+    if (bits != 0u) {
+      const uint right = uint(gl_LocalInvocationID.x == 15u) & bits, above = uint(gl_LocalInvocationID.y == 7u) & bits >> 1;
+      atomicOr(touched, 1u | right << 1 | above << 2);
+    }
+#ifdef FOAM
+    leave_foam(at);
+#endif
+  }
+  barrier();
+  if (gl_LocalInvocationIndex != 0u) return;
+  if ((touched & 1u) != 0u) list_tile(gl_WorkGroupID.xy, gl_NumWorkGroups.xy);
+  if ((touched & 2u) != 0u) list_tile(gl_WorkGroupID.xy + uvec2(1, 0), gl_NumWorkGroups.xy);
+  if ((touched & 4u) != 0u) list_tile(gl_WorkGroupID.xy + uvec2(0, 1), gl_NumWorkGroups.xy);
 }

@@ -111,7 +111,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
       composite(compute_program(
           "composite.comp",
           (defines_of(scene) + surroundings.defines() + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
-      edges(compute_program("edges.comp", foam ? "#define FOAM\n" : "")),
+      outlines(compute_program("outlines.comp", foam ? "#define FOAM\n" : "")),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles),
       pipes(pipes_of(scene)) {
@@ -381,20 +381,23 @@ void FluidRenderer::State::shade() {
   timer.mark("shade");
 }
 
-void FluidRenderer::State::smooth_edges(std::span<const View> views, unsigned framebuffer) {
+void FluidRenderer::State::smooth_edges() {
+  constexpr std::array<GLuint, 4> no_groups{0, 1, 1, 0};
   outlines.use();
-  each_view([&](const ViewTargets& t) {
-    bind_storage({t.shown.name(), t.normals.name(), t.outlines.name()});
-    dispatch_pixels(t.width, t.height);
-  });
+  each_view(
+      [&](const ViewTargets& t) {
+        glNamedBufferSubData(t.outline_tiles.name(), 0, sizeof no_groups, no_groups.data());
+        bind_storage(
+            {t.shown.name(), t.normals.name(), t.outlines.name(), t.outline_tiles.name(), t.foam.name()});
+        dispatch_pixels(t.width, t.height);
+      },
+      GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   edges.use();
-  picture.begin(framebuffer, views);
   each_view([&](const ViewTargets& t) {
-    bind_storage({t.shaded.name(), t.outlines.name(), t.normals.name(), t.foam.name()});
-    dispatch_pixels(t.width, t.height);
+    bind_storage({t.shaded.name(), t.outlines.name(), 0, t.outline_tiles.name()});
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, t.outline_tiles.name());
+    glDispatchComputeIndirect(0);
   });
-  picture.end(framebuffer, views);
-  timer.mark("edges");
 }
 
 void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<const View> views,
@@ -420,8 +423,11 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   smooth_thickness();
   if (foam && foam_from && foam_from->count() > 0) splat_foam(*foam_from);
   if (floor_light) light_floor();
+  picture.begin(framebuffer, views);
   shade();
-  smooth_edges(views, framebuffer);
+  smooth_edges();
+  picture.end(framebuffer, views);
+  timer.mark("edges");
 }
 
 }  // namespace sim

@@ -60,8 +60,8 @@ struct FluidRenderer::State {
   std::unique_ptr<FloorLight> floor_light;  // only with picture effects
   Surroundings surroundings;
   GlProgram composite;
-  GlProgram outlines = compute_program("outlines.comp");
-  GlProgram edges;
+  GlProgram outlines;
+  GlProgram edges = compute_program("edges.comp");
   GlProgram splat_foam_program;
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
@@ -108,7 +108,7 @@ struct FluidRenderer::State {
   int solids() const { return static_cast<int>(obstacles.size() + pipes.size()); }
   void light_floor();
   void shade();
-  void smooth_edges(std::span<const View> views, unsigned framebuffer);
+  void smooth_edges();
 
   GLuint particles_ = 0;  // GL buffer of the particles of the present draw
   GLuint shapes_ = 0;     // GL buffer of their ellipsoids; 0: spheres

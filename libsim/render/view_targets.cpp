@@ -33,6 +33,8 @@ void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foa
     foam.reserve(8 * pixels);
     foam.fill(0);
   }
+  const std::int64_t tiles = std::int64_t{(width + 15) / 16} * ((height + 7) / 8);
+  outline_tiles.reserve(4 * (4 + 3 * tiles));  // a tile is listed three times at most
   wet.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 7) / 8));
   wet.fill(1);  // all tiles count as wet, so that the next draw clears them
 }

@@ -33,6 +33,7 @@ struct ViewTargets {
   GlBuffer foam;                      ///< two words per pixel, see foam.glsl; all 0 between pictures
   GlBuffer shaded, shown;             ///< per pixel: linear light (shaded.glsl), nearness of what it shows
   GlBuffer outlines;                  ///< per pixel, flags of outlines.comp
+  GlBuffer outline_tiles;             ///< tiles that outlines touch, see outline_tiles.glsl
 
   void resize(const View& new_view, int thickness_step, bool with_foam);
   /// Allocates the buffers with an entry per particle for `count` particles.
