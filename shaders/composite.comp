@@ -102,7 +102,8 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
   float through = way;
   // A side wall that light meets too slantwise to leave the water mirrors it to the floor.
   const int wall = crossing.leave_axis;
-  if (to_wall > 0.95 && wall != 1 && room == max(crossing.leave, 0.0) && inside[wall] * inside[wall] < no_way_out) {
+  const bool slantwise = wall != 1 && inside[wall] * inside[wall] < no_way_out;
+  if (slantwise && to_wall > 0.95 && way > 3.0 * radius && room == max(crossing.leave, 0.0)) {
     behind.along = inside;
     behind.along[wall] = -inside[wall];
     through += min(behind.from.y / max(-inside.y, 0.05), way);

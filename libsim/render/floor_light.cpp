@@ -25,6 +25,7 @@ constexpr int surface_cell_in_cells = 3;  // edge of a surface cell / edge of a 
 // Where only [light] asks for a shadow, the maps are coarser and the shadow softer.
 constexpr int soft_cells = 256;
 constexpr float soft_level = 1;
+constexpr float soft_strength = 0.7F;
 
 bool lists_light(const Scene& scene) {
   return std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
@@ -36,6 +37,18 @@ std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 GLsizei levels_of(int cells) { return static_cast<GLsizei>(std::bit_width(static_cast<unsigned>(cells))); }
 
 }  // namespace
+
+float floor_strength(const Scene& scene, PictureEffectKind kind) {
+  const bool listed = std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
+                                  [&](const PictureEffect& effect) { return effect.kind == kind; });
+  if (!listed && kind == PictureEffectKind::Shadows) return scene.light.shadow ? soft_strength : 0;
+  return strength_of(scene.picture_effects, kind);
+}
+
+bool lights_the_floor(const Scene& scene) {
+  return floor_strength(scene, PictureEffectKind::Shadows) > 0 ||
+         floor_strength(scene, PictureEffectKind::Caustics) > 0;
+}
 
 FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const auto tank = [&](std::size_t k) { return static_cast<float>(scene.tank_size_m[k]); };

@@ -12,6 +12,10 @@
 
 namespace sim {
 
+/// Strength of a picture effect. Where the scene does not list shadows, [light] decides on them.
+float floor_strength(const Scene& scene, PictureEffectKind kind);
+/// True if the scene needs FloorLight: shadows or caustics have a strength above 0.
+bool lights_the_floor(const Scene& scene);
 /// Inputs of FloorLight's passes.
 struct FloorWater {
   unsigned particles = 0;  ///< GL buffer of RenderParticle

@@ -129,7 +129,13 @@ std::string passes_in_words(const Scene& scene) {
   if (lights_the_floor(scene)) out << "light (for what follows), ";
   for (std::size_t k = 0; k < picture_effect_count; ++k) {
     const auto kind = static_cast<PictureEffectKind>(k);
-    add(traits_of(kind).word, "strength", floor_strength(scene, kind));
+    const bool asked_by_light = kind == PictureEffectKind::Shadows && floor_strength(scene, kind) > 0 &&
+                                strength_of(scene.picture_effects, kind) == 0;
+    if (asked_by_light) {
+      out << traits_of(kind).word << " ([light] has shadow = true), ";
+    } else {
+      add(traits_of(kind).word, "strength", floor_strength(scene, kind));
+    }
   }
   out << "shade, edges\n" << absent.str();
   return out.str();

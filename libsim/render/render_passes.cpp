@@ -14,9 +14,8 @@ namespace sim {
 
 namespace {
 
-constexpr int block_px = 16;          // equal to block_px of occlusion.glsl
-constexpr float usual_shadow = 0.7F;  // strength of shadows that only [light] asks for
-constexpr GLuint tile_groups = 64;    // work groups per footprint wider than group_px; a multiple of 8
+constexpr int block_px = 16;        // equal to block_px of occlusion.glsl
+constexpr GLuint tile_groups = 64;  // work groups per footprint wider than group_px; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
 struct ViewBlock {
@@ -83,18 +82,6 @@ std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
 std::string obstacle_defines(const Scene& scene) {
   if (scene.obstacles.empty() && scene.nozzles.empty()) return "";
   return any_mesh(scene.obstacles) ? "#define OBSTACLES\n#define MESHES\n" : "#define OBSTACLES\n";
-}
-
-float floor_strength(const Scene& scene, PictureEffectKind kind) {
-  const bool listed = std::any_of(scene.picture_effects.begin(), scene.picture_effects.end(),
-                                  [&](const PictureEffect& effect) { return effect.kind == kind; });
-  if (!listed && kind == PictureEffectKind::Shadows) return scene.light.shadow ? usual_shadow : 0;
-  return strength_of(scene.picture_effects, kind);
-}
-
-bool lights_the_floor(const Scene& scene) {
-  return floor_strength(scene, PictureEffectKind::Shadows) > 0 ||
-         floor_strength(scene, PictureEffectKind::Caustics) > 0;
 }
 
 FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)

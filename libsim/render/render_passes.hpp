@@ -30,10 +30,6 @@ void bind_storage(std::initializer_list<unsigned> buffers);
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
 
-/// Strength of a picture effect. Where the scene does not list shadows, [light] decides on them.
-float floor_strength(const Scene& scene, PictureEffectKind kind);
-/// True if the scene needs FloorLight: shadows or caustics have a strength above 0.
-bool lights_the_floor(const Scene& scene);
 /// The parts of shaders/obstacles.glsl that the scene needs, as #define lines.
 std::string obstacle_defines(const Scene& scene);
 

@@ -269,6 +269,8 @@ TEST_F(SurroundingsGl, WaterShadesTheFloorUnlessTheSceneSaysNo) {
   const auto shaded = drawn(lit({}), cloud, view);
   const auto bright = drawn(lit(without), cloud, view);
   EXPECT_LT(mean_of(shaded, 1), mean_of(bright, 1) - 2);
+  EXPECT_NE(sim::passes_in_words(lit({})).find("shadows ([light]"), std::string::npos);
+  EXPECT_NE(sim::passes_in_words(lit(without)).find("shadows             not called for"), std::string::npos);
 }
 
 TEST_F(SurroundingsGl, LightOutOfRangeIsAnError) {
