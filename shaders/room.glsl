@@ -72,7 +72,8 @@ vec3 seen(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) 
   if (met.at < never) return obstacle_light(met);
 #endif
   const Crossing c = cross_tank(o, d);
-  const bool through = c.leave > max(c.enter, 0.0) - 2e-3;  // the ray passes the tank, or begins in it
+  // The ray passes the tank, or begins in it or at most 2 mm beyond a wall.
+  const bool through = c.enter > 0.0 ? c.leave > c.enter : c.leave > -2e-3;
   const float way = through ? max(c.leave, 0.0) : 0.0, width = footprint_per_m * (travelled + way);
   const vec3 p = o + way * d;
   const float frame = through ? framed * frame_cover(p, c.leave_axis, width) : 0.0;

@@ -206,6 +206,39 @@ TEST_F(SurroundingsGl, OutlinesOfSolidsAreSmooth) {
   EXPECT_LT(off_finer(picture, finer, 4, counts), 20);
 }
 
+/// True if the ray through a point of the picture, px from the top left, passes the box from 0 to `size_m`.
+bool passes(const sim::View& view, double x, double y, const sim::Vec3d& size_m) {
+  const auto rays = sim::pixel_rays(view);
+  const auto pose = sim::rigid_inverse(view.view);
+  const double slopes[3] = {x * rays.scale_x + rays.offset_x,
+                            (view.viewport.height - y) * rays.scale_y + rays.offset_y, -1};
+  double enter = 0, leave = 1e9;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double along = slopes[0] * pose[k] + slopes[1] * pose[4 + k] + slopes[2] * pose[8 + k];
+    const double a = -pose[12 + k] / along, b = (size_m[k] - pose[12 + k]) / along;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter < leave;
+}
+
+TEST_F(SurroundingsGl, OutlinesOfTheTankAreSmooth) {
+  auto scene = lit({});
+  scene.light.shadow = false;
+  scene.tank_size_m = {2.8, 2, 1.2};
+  const sim::Vec3d eye{1.2, 1.8, 4.6}, target{1.4, 0.7, 0.6};
+  const auto fine = from(eye, target, 960, 640);
+  const auto picture = drawn(scene, {}, from(eye, target, 240, 160)), finer = drawn(scene, {}, fine);
+  const auto counts = [&](int x, int y) {
+    int hits = 0;
+    for (int k = 0; k < 16; ++k)
+      hits += passes(fine, 4 * x + k % 4 + 0.5, 4 * y + k / 4 + 0.5, scene.tank_size_m);
+    return hits > 0 && hits < 16;
+  };
+  // Measured: 8.1 levels; 12.5 if rays that miss the tank by 2 mm see its frame; 24.4 without smoothing.
+  EXPECT_LT(off_finer(picture, finer, 4, counts), 10);
+}
+
 TEST_F(SurroundingsGl, ADropShowsNoFrameOfTheTank) {
   auto scene = lit({});
   scene.light.shadow = false;
