@@ -256,6 +256,36 @@ TEST_F(SurroundingsGl, ADropShowsNoFrameOfTheTank) {
   EXPECT_EQ(dark, 0);
 }
 
+TEST_F(SurroundingsGl, APoolMirrorsAColumnOfWaterBehindIt) {
+  sim::SceneLight light;
+  light.absorption_per_m = {20, 0, 20};
+  light.shadow = false;
+  std::vector<RenderParticle> pool;
+  for (float x = 0.1F; x < 8; x += 0.2F)
+    for (float z = 0.1F; z < 8; z += 0.2F)
+      for (float y = 0.1F; y < 0.6F; y += 0.2F) pool.push_back({x, y, z, 0.1F});
+  auto with_column = pool;
+  for (float x = 3.1F; x < 4.9F; x += 0.2F)
+    for (float z = 1.9F; z < 2.7F; z += 0.2F)
+      for (float y = 0.7F; y < 3.5F; y += 0.2F) with_column.push_back({x, y, z, 0.1F});
+  const auto view = from({4, 1.4, 7.8}, {4, 0.8, 2}, 120, 120);
+  const auto bare = drawn(lit(light), pool, view), mirrored = drawn(lit(light), with_column, view);
+  // Pixels of the pool at z = 3.8 to 4.6, between the eye and the column.
+  const auto rays = sim::pixel_rays(view);
+  const auto pose = sim::rigid_inverse(view.view);
+  int pixels = 0, redder = 0;
+  for (int row = 60; row < 120; ++row) {
+    const double slope = (119.5 - row) * rays.scale_y + rays.offset_y;
+    const double down = -(slope * pose[5] - pose[9]), ahead = -(slope * pose[6] - pose[10]);
+    const double z = 7.8 - (1.4 - 0.6) * ahead / down;
+    if (!(z > 3.8 && z < 4.6)) continue;
+    ++pixels;
+    redder += *at(bare, 60, row, 0) - *at(mirrored, 60, row, 0);
+  }
+  ASSERT_GT(pixels, 2);
+  EXPECT_GT(redder, 10 * pixels) << redder;
+}
+
 class PipesGl : public SurroundingsGl {
  protected:
   static sim::Scene poured() {
