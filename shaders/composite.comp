@@ -89,7 +89,7 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
   const vec3 inside = refract(d, n, into_water);
   const Crossing crossing = cross_tank(position, inside);
   float room = max(crossing.leave, 0.0);
-#ifdef OBSTACLES
+#if defined(OBSTACLES) && !defined(ONLY_PIPES)
   room = min(room, meet_obstacles(position, inside).at);
 #endif
   const float way = min(length_m, room);

@@ -1,4 +1,5 @@
-// Rigid obstacles in the tank, and the first intersection of a ray with them.
+// Rigid obstacles in the tank and pipes, and the first intersection of a ray with them. ONLY_PIPES: there are no other
+// obstacles.
 layout(std430, binding = 4) readonly buffer Obstacles {
   vec4 obstacles[];  // three per obstacle: (centre, radius), (half sides, kind), unit quaternion
 };
@@ -61,8 +62,7 @@ void meet_box(inout Meeting m, vec3 o, vec3 d, vec3 half_sides) {
 Meeting meet_obstacles(vec3 o, vec3 d) {
   Meeting m = Meeting(never, vec3(0.0), 0.0);
   for (int k = 0; k < obstacle_count; ++k) {
-    const vec4 centre = obstacles[3 * k], half_sides = obstacles[3 * k + 1], turn = obstacles[3 * k + 2];
-    const vec4 back = vec4(-turn.xyz, turn.w);
+    const vec4 centre = obstacles[3 * k], half_sides = obstacles[3 * k + 1];
     if (half_sides.w == pipe_kind) {
       Meeting pipe = Meeting(m.at, m.normal, pipe_kind);
       meet_side(pipe, o - centre.xyz, d, half_sides.y, centre.w);
@@ -70,6 +70,9 @@ Meeting meet_obstacles(vec3 o, vec3 d) {
       if (pipe.at < m.at) m = pipe;
       continue;
     }
+#ifndef ONLY_PIPES
+    const vec4 turn = obstacles[3 * k + 2];
+    const vec4 back = vec4(-turn.xyz, turn.w);
     const vec3 from = turned(back, o - centre.xyz), along = turned(back, d);
     Meeting here = Meeting(m.at, vec3(0.0), half_sides.w);
 #ifdef MESHES
@@ -87,6 +90,7 @@ Meeting meet_obstacles(vec3 o, vec3 d) {
       meet_box(here, from, along, half_sides.xyz);
     }
     if (here.at < m.at) m = Meeting(here.at, turned(turn, here.normal), here.kind);
+#endif
   }
   return m;
 }

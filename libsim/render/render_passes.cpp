@@ -80,7 +80,7 @@ std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
 }  // namespace
 
 std::string obstacle_defines(const Scene& scene) {
-  if (scene.obstacles.empty() && scene.nozzles.empty()) return "";
+  if (scene.obstacles.empty()) return scene.nozzles.empty() ? "" : "#define OBSTACLES\n#define ONLY_PIPES\n";
   return any_mesh(scene.obstacles) ? "#define OBSTACLES\n#define MESHES\n" : "#define OBSTACLES\n";
 }
 
