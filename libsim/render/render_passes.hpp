@@ -111,4 +111,13 @@ struct FluidRenderer::State {
   std::int64_t count_ = 0;
 };
 
+template <class Dispatch>
+void FluidRenderer::State::each_view(Dispatch dispatch, unsigned more_barriers) {
+  for (ViewTargets& t : std::span(targets).first(views_drawn)) {
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, t.block.name());
+    dispatch(t);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | more_barriers);
+}
+
 }  // namespace sim
