@@ -229,10 +229,6 @@ void FluidRenderer::State::smooth_thickness() {
   timer.mark("thickness");
 }
 
-void FluidRenderer::State::tell_obstacles(const GlProgram& program) const {
-  if (solids() > 0) glUniform1i(program.uniform("obstacle_count"), solids());
-}
-
 void FluidRenderer::State::bind_obstacles() const {
   if (solids() > 0) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, poses.name());
   if (grids.name()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, grids.name());

@@ -99,7 +99,10 @@ struct FluidRenderer::State {
   void smooth_depth();
   void smooth_thickness();
   void splat_foam(const ParticleBuffer& from);
-  void tell_obstacles(const GlProgram& program) const;  ///< sets the number of obstacles of a program in use
+  /// Sets the number of obstacles and pipes of a program in use.
+  void tell_obstacles(const GlProgram& program) const {
+    if (solids() > 0) glUniform1i(program.uniform("obstacle_count"), solids());
+  }
   void bind_obstacles() const;
   int solids() const { return static_cast<int>(obstacles.size() + pipes.size()); }
   void light_floor();
