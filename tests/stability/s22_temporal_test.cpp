@@ -194,9 +194,9 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
   }
 }
 // Case S22 takes 10 s, or 2 s in short tests. It asks for an error of the centre below 0.02 and for at most
-// 1.05 of the full solve's kinetic energy at each beta (the lowest probability that a particle is solved);
-// docs/results.md explains why lower betas have larger bounds.
-const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.025, 0.8, 1.05}, {0.3, 0.035, 0.8, 1.08}};
+// 1.05 of the full solve's kinetic energy at each beta (the lowest probability that a particle is solved).
+// The larger bound at 0.3 stands in docs/results.md.
+const std::vector<DamGate> s22{{0.9, 0.02, 0.95, 1.05}, {0.67, 0.02, 0.95, 1.05}, {0.3, 0.035, 0.95, 1.05}};
 TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {
   dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);
 }
