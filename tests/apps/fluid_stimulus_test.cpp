@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "libsim/surface/host_surface.hpp"
 #include "libstudy/base/clock.hpp"
 #include "libstudy/stimulus/headless_display.hpp"
 #include "stats/base/error.hpp"
@@ -41,6 +42,10 @@ class FakeSimulation final : public sim::Simulation {
   std::vector<float> radii_m() const override { return {}; }
   void read_particles(std::vector<sim::RenderParticle>& out) const override {
     out = bake_test::particles(frame_);
+  }
+  void read_surface(std::vector<sim::RenderParticle>& out, std::vector<sim::RenderShape>& shapes) override {
+    read_particles(out);
+    sim::HostSurface(scene()).shape(out, shapes);
   }
   void read_saliency(std::vector<sim::ParticleSaliency>& out) const override { out.clear(); }
   void measure_saliency(const sim::Looks&, std::vector<sim::ParticleSaliency>& out) override { out.clear(); }
