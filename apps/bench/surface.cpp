@@ -112,8 +112,8 @@ void add_run_rows(const SurfaceOptions& options, const std::vector<sim::Surface>
 
 figures::TextTable table_of(const std::vector<SurfaceRow>& rows, const std::vector<sim::Surface>& surfaces) {
   figures::TextTable out{{"figure", "of", "level"}, {}};
-  for (const sim::Surface surface : surfaces) out.head.push_back(sim::surface_name(surface));
-  if (surfaces.size() == 2) out.head.push_back("ratio");
+  for (const sim::Surface surface : surfaces) out.head.emplace_back(sim::surface_name(surface));
+  if (surfaces.size() == 2) out.head.emplace_back("ratio");
   for (const SurfaceRow& row : rows) {
     auto& cells = out.rows.emplace_back(std::vector<std::string>{row.figure, row.of, row.level});
     for (const double value : row.values) cells.push_back(figures::number(value, row.digits));

@@ -15,10 +15,11 @@ const FluidRenderer::State::Splats& FluidRenderer::State::splats_of(bool with_sh
   std::optional<Splats>& out = splats[with_shapes];
   if (!out) {
     const std::string shape = with_shapes ? "#define ELLIPSOIDS\n" : "";
-    out.emplace(compute_program("splat.comp", shape.c_str()),
-                compute_program("splat_wide.comp", shape.c_str()),
-                compute_program("front.comp", shape.c_str()),
-                compute_program("splat_wide.comp", (shape + "#define FRONT\n").c_str()));
+    const std::string front_shape = shape + "#define FRONT\n";
+    out = Splats{.small = compute_program("splat.comp", shape.c_str()),
+                 .wide = compute_program("splat_wide.comp", shape.c_str()),
+                 .front = compute_program("front.comp", shape.c_str()),
+                 .front_wide = compute_program("splat_wide.comp", front_shape.c_str())};
   }
   return *out;
 }
