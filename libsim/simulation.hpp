@@ -264,6 +264,9 @@ class Simulation {
   /// True if this run computes saliency from the picture passed to look(); if false, the caller need not read
   /// the picture back from the renderer.
   virtual bool follows_picture() const = 0;
+  /// True if a picture may depend on those drawn before it: while particles change levels, ellipsoids change
+  /// in steps between turns (libsim/surface). Then draw every frame, as a viewer sees it.
+  virtual bool picture_has_memory() const { return radii_m().size() > 1; }
   /// Number of frames since the water's settling ended (frame 0), including SimulationOptions::start_frame.
   virtual int frame() const = 0;
   /// Simulated time since frame 0, s.

@@ -57,14 +57,16 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
 }
 
 // Light that the surface mirrors towards the eye. A ray that is mirrored downwards meets water again: its light is
-// that of the direction mirrored once more, less what the water takes.
-vec3 mirrored_light(vec3 position, vec3 mirrored, float share, float radius, float width_per_m) {
+// that of the direction mirrored once more, less what the water takes. Upright water, such as that at the near
+// glass, mirrors it to the ground.
+vec3 mirrored_light(vec3 position, vec3 mirrored, bool upright, float share, float radius, float width_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
   if (met.at < never) return obstacle_light(met);
 #endif
-  const float kept = mirrored.y < 0.0 ? 0.5 : 1.0;
-  const vec3 up = normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
+  const bool again = mirrored.y < 0.0 && !upright;
+  const float kept = again ? 0.5 : 1.0;
+  const vec3 up = upright ? mirrored : normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
   vec3 light = surroundings(position, up, width_per_m, 0.0);
   light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
   if (share > least_share) {
@@ -219,7 +221,7 @@ void main() {
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
-    mirrored = mirrored_light(position, reflect(d, n), share, radius, footprint_per_m + 2.0 * bend);
+    mirrored = mirrored_light(position, reflect(d, n), abs(n.y) < 0.1, share, radius, footprint_per_m + 2.0 * bend);
     const Behind wet = refracted(position, d, n, bend, length_m, radius, footprint_per_m, distance_m);
     if (opacity == 1.0) behind = wet;
     behind.kept = mix(vec3(1.0), wet.kept, opacity);

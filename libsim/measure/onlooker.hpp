@@ -24,7 +24,8 @@ class Onlooker {
   void look(sim::Simulation& fluid, const sim::Vec3d& gaze_m) {
     picture_.look(fluid, view_, sim::gaze_at(camera_, gaze_m));
   }
-  /// Calls look(), advances by a frame, and draws if `wanted` or if the run computes saliency from pictures.
+  /// Calls look(), advances by a frame, and draws if `wanted`, if the run computes saliency from pictures, or
+  /// if pictures depend on those before.
   /// Passes the measured duration to Simulation::frame_time.
   void step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted);
   void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }

@@ -20,14 +20,22 @@ constexpr double pipe_per_mouth = 1.3;
 constexpr double pipe_diameters = 40;  // length above the tank
 constexpr double room_per_tank = 1.2, height_per_tank = 2.0, least_hall_m = 2.5;
 
+/// Height of the hall of a room: it holds the tank and the scene's cameras.
+double ceiling_of(const Scene& scene) {
+  const double eyes = std::max({scene.view.eye_m[1], scene.overview.eye_m[1], 0.0});
+  return std::max(height_per_tank * scene.tank_size_m[1] + least_hall_m, eyes + 1);
+}
+
 }  // namespace
 
 std::vector<Pipe> pipes_of(const Scene& scene) {
   std::vector<Pipe> out;
   for (const Nozzle& nozzle : scene.nozzles) {
     const double mouth = nozzle.position_m[1];
-    const double half =
-        (std::max(scene.tank_size_m[1], mouth) - mouth) / 2 + pipe_diameters * nozzle.diameter_m / 2;
+    const double top = scene.light.environment == Environment::Room
+                           ? std::max(ceiling_of(scene), mouth)
+                           : std::max(scene.tank_size_m[1], mouth) + pipe_diameters * nozzle.diameter_m;
+    const double half = (top - mouth) / 2;
     out.push_back({{nozzle.position_m[0], mouth + half, nozzle.position_m[2]},
                    pipe_per_mouth * nozzle.diameter_m / 2,
                    half});
@@ -46,7 +54,7 @@ Surroundings::Surroundings(const Scene& scene) {
   for (std::size_t k = 0; k < 3; ++k) {
     // The hall holds the tank and the scene's cameras.
     const auto [least, most] = std::minmax({scene.view.eye_m[k], scene.overview.eye_m[k], 0.0});
-    const double high = k == 1 ? height_per_tank * tank[1] + least_hall_m : tank[k] + around;
+    const double high = k == 1 ? ceiling_of(scene) : tank[k] + around;
     hall_[k] = k == 1 ? 0 : static_cast<float>(std::min(-around, least - 1));
     hall_[4 + k] = static_cast<float>(std::max(high, most + 1));
     hall_[8 + k] = static_cast<float>(random() >> 8) / 16777216;

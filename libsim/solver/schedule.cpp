@@ -126,7 +126,7 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
 }
 
 std::string why_not(const Stage& stage, const Demand& demand) {
-  if (stage.part == Part::Activation && demand.keeps_all_solved != no_effect)
+  if (stage.called_for == if_activation && demand.keeps_all_solved != no_effect)
     return std::string("no particle rests where the effect ") + traits_of(demand.keeps_all_solved).word +
            " acts";
   const Effect* effect = stage.effect == no_effect ? nullptr : listed(demand, stage.effect);

@@ -111,7 +111,7 @@ struct SurfaceRules {
   float alone = 1, crowded = 4;
   float drop_radius = 0.8f;  ///< radius of a particle without neighbours
   float most_stretch = 2;    ///< largest ratio of a drop's long half axis to drop_radius
-  int fading = 4;            ///< frames in which a particle fades out that merged into another
+  int fading = 4;            ///< a particle that merged into another is drawn for one frame less, fading out
   float newborn = 0.15f;  ///< share of Ellipsoid::square with which a particle without a last picture begins
 };
 

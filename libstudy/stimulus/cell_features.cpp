@@ -60,8 +60,8 @@ PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
     fluid.prepare(start_frame + step);
     const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: the three successive pictures
     const bool measured = step + 1 >= between && phase <= 2;
-    // Methods that follow the picture need the picture of the first step.
-    if (measured || step == 0 || fluid.follows_picture())
+    // The first step is drawn for methods that use the last picture.
+    if (measured || step == 0 || fluid.needs_every_picture())
       fluid.draw({target.framebuffer(), width_px, height_px});
     if (!measured) continue;
     last[static_cast<std::size_t>(phase)] = to_measure(target.read(), fluid.read_depth());
