@@ -350,8 +350,9 @@ class Simulation {
     read_particles(out);
     shapes.clear();
   }
-  /// Like copy_to_gl, for the particles as ellipsoids, in buffers for particle_capacity() of them. The number
-  /// written, or none instead of false.
+  /// Writes what read_surface returns into two GL buffers of this thread's context, on the device. Each
+  /// buffer needs room for particle_capacity() elements. Returns the number of particles written. Returns
+  /// nothing where copy_to_gl would return false: then use read_surface and upload the result.
   virtual std::optional<std::int64_t> copy_surface_to_gl(const GlBufferRef&, const GlBufferRef&) {
     return {};
   }

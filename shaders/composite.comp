@@ -150,8 +150,9 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   return normalize(n - max(dot(n, away) + 0.03, 0.0) * away);
 }
 
-// The filter rounds off the edge between the surface and water that lies against the tank's near side. There the
-// water is as flat as the glass: the normal is the glass's, in world space, and its own from one radius behind it on.
+// The normal of water that lies against the near side of the tank, in world space. The depth filter rounds off the
+// edge between this water and the water's surface, so at the glass the glass's normal is taken. From one particle
+// radius behind the glass on, the water's own normal n is taken.
 vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius) {
   if (tank.w == 0.0 || c.enter <= 0.0 || (c.enter_axis == 1 && (d.y > 0.0 || absorption.w == 0.0))) return n;
   const float towards = d[c.enter_axis];

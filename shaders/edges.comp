@@ -1,7 +1,7 @@
 // Smooths outlines in the picture; one work group per tile that outlines touch. Where an outline runs along rows or
-// columns of pixels and steps aside at its ends, the true outline is the line between the middles of the steps: each
-// pixel that it crosses takes the light of its neighbour beyond the outline, by the share that lies beyond (after
-// Reshetnikov 2009).
+// columns of pixels and steps aside at its ends, the true outline is the line between the middles of the steps. This
+// line divides each pixel that it crosses. The pixel mixes its own light with that of the neighbour across the line,
+// by the areas of both parts (after Reshetnikov 2009).
 #include "view.glsl"
 #include "shaded.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

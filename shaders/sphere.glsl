@@ -33,9 +33,9 @@ Sphere sphere_of(uint i) {
                 nearest);
 }
 
-// Half the extent along each axis of the eye, m.
+// Half the sphere's size along the x, y and z axes of eye space, m.
 vec3 half_extent(Sphere s) { return vec3(s.radius); }
-// Smaller half extent across the line of sight, m.
+// Half the smallest size across the line of sight, m.
 float narrow_extent(Sphere s) { return s.radius; }
 
 // Depths at which a ray enters and leaves the whole sphere; false if it misses. The ray is assumed to pass through

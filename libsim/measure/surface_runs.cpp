@@ -4,12 +4,14 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "libsim/gl/offscreen.hpp"
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/measure/timed_run.hpp"
 #include "libsim/render/fluid_picture.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/progress.hpp"
 #include "stats/base/timing.hpp"
 
@@ -89,6 +91,10 @@ std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::Simulat
     progress.update(static_cast<std::size_t>(warm_up + frame));
   }
   for (Popping& one : out) {
+    if (one.turns == 0 || one.others == 0) {
+      throw base::Error("popping of " + scene.name + " over " + std::to_string(frames) + " frames",
+                        "needs frames with and without splits or merges", "use more frames");
+    }
     one.turning /= one.turns;
     one.other /= one.others;
   }

@@ -18,9 +18,10 @@ struct Popping {
   double ratio() const { return turning / other; }
 };
 
-/// Steps the fluid and draws each frame by each surface. The method looks at the pictures of the last
-/// surface, and at the scene's gaze. The first `warm_up` frames do not count: in them a method with levels
-/// finds its levels. One result per surface, all of the same states. Needs a current context.
+/// Steps the fluid and draws each frame once by each of `surfaces`. The method gets the pictures of the last
+/// one, and the scene's gaze. The first `warm_up` frames do not count: in them a method with levels
+/// finds its levels. One result per surface, all of the same states. Needs a current context. base::Error if
+/// particles split or merged in every counted frame, or in none.
 std::vector<Popping> measure_popping(const sim::Scene& scene, const sim::SimulationOptions& fluid,
                                      int warm_up, int frames, const base::PictureSize& size,
                                      const std::vector<sim::Surface>& surfaces);

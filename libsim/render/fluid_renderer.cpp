@@ -224,8 +224,7 @@ GlPicture FluidRenderer::picture(std::size_t view) const {
 }
 
 void FluidRenderer::read_picture(GBuffer& out, std::size_t view) const {
-  state_->drawn(view).read_picture(state_->options, out);
-  out.radius_scale = state_->drawn_radius_scale();
+  state_->drawn(view).read_picture(state_->drawn_radius_scale(), out);
 }
 
 std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
@@ -245,9 +244,7 @@ FloorMap FluidRenderer::read_floor() const {
 }
 
 GBuffer FluidRenderer::read_gbuffer(std::size_t view) const {
-  GBuffer out = state_->drawn(view).read_gbuffer(state_->options);
-  out.radius_scale = state_->drawn_radius_scale();
-  return out;
+  return state_->drawn(view).read_gbuffer(state_->drawn_radius_scale(), state_->options);
 }
 
 }  // namespace sim

@@ -51,11 +51,11 @@ void ViewTargets::read_depth(std::vector<float>& out) const {
   depth.read(out.data(), static_cast<std::int64_t>(4 * out.size()));
 }
 
-void ViewTargets::read_picture(const RenderOptions& options, GBuffer& out) const {
+void ViewTargets::read_picture(float radius_scale, GBuffer& out) const {
   out.width = width;
   out.height = height;
   out.view = view;
-  out.radius_scale = options.radius_scale;
+  out.radius_scale = radius_scale;
   for (auto* unread : {&out.filtered_depth, &out.thickness, &out.radius}) unread->clear();
   out.front.clear();
   read_depth(out.depth);
@@ -66,9 +66,9 @@ void ViewTargets::read_picture(const RenderOptions& options, GBuffer& out) const
   out.normal.resize(3 * pixels());
 }
 
-GBuffer ViewTargets::read_gbuffer(const RenderOptions& options) const {
+GBuffer ViewTargets::read_gbuffer(float radius_scale, const RenderOptions& options) const {
   GBuffer g;
-  read_picture(options, g);
+  read_picture(radius_scale, g);
   const auto fetch = [](const GlBuffer& buffer, auto& out, std::size_t count) {
     out.resize(count);
     buffer.read(out.data(), static_cast<std::int64_t>(4 * count));

@@ -42,8 +42,9 @@ struct ViewTargets {
   // Implement the functions of FluidRenderer with the same names. The caller sets a memory barrier between
   // the passes and the reads.
   void read_depth(std::vector<float>& out) const;
-  void read_picture(const RenderOptions& options, GBuffer& out) const;
-  GBuffer read_gbuffer(const RenderOptions& options) const;
+  /// radius_scale: GBuffer::radius_scale of the last draw.
+  void read_picture(float radius_scale, GBuffer& out) const;
+  GBuffer read_gbuffer(float radius_scale, const RenderOptions& options) const;
 
  private:
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }

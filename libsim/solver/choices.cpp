@@ -257,10 +257,12 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.free_obstacles = any_free(scene.obstacles);
   out.obstacles_meet = any_meet(scene.obstacles);
   out.activation = (method.temporal || options.temporal.always) && !stays_off(options.temporal);
-  for (const Effect& effect : out.effects) {
-    if (!out.activation || effect.kind == EffectKind::Foam || !acts(out, effect.kind)) continue;
+  const auto keeps = std::find_if(out.effects.begin(), out.effects.end(), [&](const Effect& effect) {
+    return effect.kind != EffectKind::Foam && acts(out, effect.kind);
+  });
+  if (out.activation && keeps != out.effects.end()) {
     out.activation = false;
-    out.keeps_all_solved = effect.kind;
+    out.keeps_all_solved = keeps->kind;
   }
   out.levels = method.adaptive() && levels.first < levels.second;
   out.forced_targets = out.levels && options.forced_targets;

@@ -1,4 +1,5 @@
 #include "libsim/surface/ellipsoids.hpp"
+
 #include <algorithm>
 
 namespace sim::SIM_BACKEND {

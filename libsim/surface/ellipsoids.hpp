@@ -63,8 +63,8 @@ struct SurfaceParticles {
 class Ellipsoids {
  public:
   /// Writes each particle's drawn centre and radius r = h / 4 to centre[i], and its ellipsoid to shape[i].
-  /// Behind them follow those that fade out: particles that merged into others. Returns the number of both,
-  /// at most from.n or, with memory, from.most_ids.
+  /// Behind them it writes the particles that merged into others and fade out. Returns the number of
+  /// particles written: from.n without ids; with ids up to from.most_ids.
   int compute(const SurfaceParticles& from, Vec4* centre, RenderShape* shape);
 
   /// The same, copied to the host.

@@ -11,7 +11,7 @@ namespace sim {
 
 class HostSurface {
  public:
-  /// The scene gives the walls that mirror the water.
+  /// `scene`: its tank's walls mirror the water, so that water has no surface at a wall.
   explicit HostSurface(const Scene& scene);
   ~HostSurface();
 

@@ -29,7 +29,7 @@ TEST(CurvatureEnergy, OfAWaveIsItsClosedForm) {
   EXPECT_LT(wave(0.4 * d), 1e-3 * wave(d)) << "shorter than 2/3 d";
 }
 
-/// What issue 55 asks of the outline and of the ball's normals, with fewer particles than the bench's.
+/// Outline and normals at fewer particles than in docs/results.md, with wider bounds.
 TEST(KnownShapes, EllipsoidsKeepTheOutlineOfBallAndColumn) {
   const auto context = sim::GlContext::make_headless();
   for (const auto shape : {measure::KnownShape::Ball, measure::KnownShape::Column}) {

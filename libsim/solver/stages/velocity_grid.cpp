@@ -5,8 +5,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// The velocity change that the resting particles of a cell and level lack: the mean change, over the frame,
-/// of the particles solved in every substep, minus that of the resting ones. An entry without particles of
-/// either kind takes the mean of the cell's other levels.
+/// of the particles solved in every substep, minus that of the resting ones. Where one of these two groups is
+/// empty, the mean of the cell's other levels stands in.
 struct MissingChange {
   const MomentumSum* before;
   const MomentumSum* after;

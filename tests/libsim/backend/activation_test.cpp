@@ -188,8 +188,9 @@ SIM_TEST(EndOfRest, GivesOnlyWhatIsMissing) {
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_NEAR(after[i].y, 0.5f, 1e-5f) << i;
 }
 
-/// After a rest of one substep the correction by the projections counts as a velocity over two substeps, and
-/// the move by the coarse pressure over one.
+/// A particle that rested in the substep before gets half of the velocity that the projections' displacement
+/// gives others, because it stands for two substeps. The coarse pressure acts in each substep and counts in
+/// full.
 SIM_TEST(EndOfRest, CorrectionsCountOverTwoSubsteps) {
   auto state = ready(drops(1000, 9), 0.4f);
   state.parameters.most_speed = 1000;
