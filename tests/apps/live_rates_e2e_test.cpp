@@ -35,7 +35,7 @@ class LiveRatesE2e : public ::testing::Test {
                                                                        {"n_star", "[\"64\"]"}}));
   }
   /// Asks for a thousand frames of this fluid a second, more than any machine computes.
-  void write_too_fast() { write_protocol("1000", "0.5"); }
+  void write_too_fast() { write_protocol("1000", "1"); }
   /// Trials are cut as soon as their time is over, so that a trial is cut even on a machine that computes
   /// most of its frames.
   void cut_at_once() { replace_in(protocol_, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "); }
@@ -97,9 +97,10 @@ TEST_F(LiveRatesE2e, TheyArePlayedWhereThatIsAcceptedAlsoByResumeAndCutWithTheir
   const Ended resumed = run_program({vip_study, "resume", "--db", database_}, own_cache());
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.err, Not(HasSubstr("measuring")));
+  // The first showing may have reached its own cut in the frame in which it was stopped; it never counts.
   EXPECT_EQ(count_in(database_,
-                     "SELECT count(*) FROM presentation WHERE state = 'played' AND "
-                     "verdict = 'fail' AND reason LIKE 'cut %frames shown%'"),
+                     "SELECT count(*) FROM presentation JOIN showing USING (presentation_id) WHERE counts AND "
+                     "state = 'played' AND verdict = 'fail' AND reason LIKE 'cut %frames shown%'"),
             1);
   EXPECT_EQ(count_in(database_,
                      "SELECT count(*) FROM response JOIN unit USING (unit_id) WHERE trial_id IS NOT NULL"),
