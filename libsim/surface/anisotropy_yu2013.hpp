@@ -113,6 +113,9 @@ struct SurfaceRules {
   float most_stretch = 2;    ///< largest ratio of a drop's long half axis to drop_radius
   int fading = 4;            ///< a particle that merged into another is drawn for one frame less, fading out
   float newborn = 0.15f;  ///< share of Ellipsoid::square with which a particle without a last picture begins
+  /// Way in a frame, in radii of the particle, up to which a particle blends with its last ellipsoid, and
+  /// from which it does not: a blend lags behind moving water, whose changes of level are not seen.
+  float slow = 0.1f, fast = 0.4f;
 };
 
 /// Weighted sums over the particles around a particle, itself included. Offsets are in supports of the
@@ -209,17 +212,24 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
   return {shift, water * square + (1 - water) * drop, r};
 }
 
+/// Share of the blend with the last picture that applies to a particle of radius r with this way in a frame.
+SIM_FN float blend_share(const SurfaceRules& rules, float r, Vec3 way) {
+  return 1 - smooth_rise(rules.slow, rules.fast, length(way) / r);
+}
+
 /// The ellipsoid `target` as it is drawn if the last picture had `last` (its centre relative to the
 /// particle's present place, moved along with the water). `last_r`: the particle's radius then; 0: there was
-/// none. So a split or a merge changes the picture gradually.
+/// none. follow: share of the way to `target` of a slow particle. share: blend_share(). So a split or a merge
+/// changes the picture gradually.
 SIM_FN Ellipsoid blended(const SurfaceRules& rules, const Ellipsoid& target, Ellipsoid last, float last_r,
-                         float r, float follow) {
+                         float r, float follow, float share) {
   const Vec3 way = target.centre - last.centre;
   const float furthest = 4 * at_least(r, last_r);
   if (!(last_r > 0) || !(dot(way, way) <= furthest * furthest))
-    return {target.centre, rules.newborn * target.square, r};
-  return {last.centre + follow * (target.centre - last.centre),
-          follow * target.square + (1 - follow) * last.square, follow * r + (1 - follow) * last.radius};
+    return {target.centre, (1 - share * (1 - rules.newborn)) * target.square, r};
+  const float left = share * (1 - follow);
+  return {target.centre - left * way, (1 - left) * target.square + left * last.square,
+          (1 - left) * r + left * last.radius};
 }
 
 }  // namespace sim::SIM_BACKEND

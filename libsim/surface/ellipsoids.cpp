@@ -62,7 +62,7 @@ struct Memory {
     if (last_centre) {
       const Vec4 last = last_centre[k];
       const Ellipsoid then{xyz(last) + way - place, unpacked(last_shape[k]), last_motion[k].w};
-      drawn = blended(rules, drawn, then, last.w, r, follow);
+      drawn = blended(rules, drawn, then, last.w, r, follow, blend_share(rules, r, way));
     }
     centre[k] = with_w(place + drawn.centre, r);
     shape[k] = packed(drawn.square);
@@ -73,19 +73,22 @@ struct Memory {
 
 /// Marks the ids of particles that have gone and still fade out.
 struct MarkFading {
+  SurfaceRules rules;
   Memory memory;
-  int frames;
   std::uint8_t* fades;
   SIM_FN void operator()(int k) const {
     const float last = memory.last_centre[k].w;
-    fades[k] = memory.centre[k].w == 0 && (last > 0 || (last < 0 && last > 1 - static_cast<float>(frames)));
+    const Vec4 motion = memory.last_motion[k];
+    fades[k] =
+        memory.centre[k].w == 0 && (last < 0 ? last > 1 - static_cast<float>(rules.fading)
+                                             : last > 0 && blend_share(rules, motion.w, xyz(motion)) > 0);
   }
 };
 
 /// Draws the particles that fade out behind the n others, in the order of their ids: they move on and shrink.
 struct DrawFading {
+  SurfaceRules rules;
   Memory memory;
-  int frames;
   const std::uint8_t* fades;
   const int* count;
   int n;
@@ -95,10 +98,13 @@ struct DrawFading {
     if (!fades[k]) return;
     const Vec4 last = memory.last_centre[k];
     const Vec4 motion = memory.last_motion[k];
-    const float age = last.w > 0 ? 1 : 1 - last.w;
-    const auto whole = static_cast<float>(frames);
+    const bool first = last.w > 0;
+    const float age = first ? 1 : 1 - last.w;
+    const auto whole = static_cast<float>(rules.fading);
+    const float share = first ? blend_share(rules, motion.w, xyz(motion)) : 1.0f;
     const Vec3 place = xyz(last) + xyz(motion);
-    const RenderShape left = packed(((whole - age) / (whole - age + 1)) * unpacked(memory.last_shape[k]));
+    const RenderShape left =
+        packed((share * (whole - age) / (whole - age + 1)) * unpacked(memory.last_shape[k]));
     memory.centre[k] = with_w(place, -age);
     memory.shape[k] = left;
     memory.motion[k] = motion;
@@ -230,10 +236,10 @@ int Ellipsoids::compute(const SurfaceParticles& from, Vec4* centre, RenderShape*
   if (!memory.last_centre) return from.n;
   const int ids = from.most_ids;
   fades_.resize(static_cast<std::size_t>(ids));
-  for_each("mark fading", ids, MarkFading{memory, rules.fading, fades_.data()});
+  for_each("mark fading", ids, MarkFading{rules, memory, fades_.data()});
   scanner_.inclusive_count(fades_.data(), ids, count_);
   for_each("draw fading", ids,
-           DrawFading{memory, rules.fading, fades_.data(), count_.data(), from.n, centre, shape});
+           DrawFading{rules, memory, fades_.data(), count_.data(), from.n, centre, shape});
   return from.n + last_of(count_);
 }
 

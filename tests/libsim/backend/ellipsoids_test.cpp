@@ -220,6 +220,37 @@ SIM_TEST(Ellipsoids, FollowInEqualStepsAndMergedParticlesFadeOut) {
   }
 }
 
+SIM_TEST(Ellipsoids, OfFastWaterDoNotBlendAndDoNotFadeOut) {
+  const SurfaceRules rules;
+  // The error of particle 0 in the first frame of a change of levels, in units of its jump, and whether the
+  // particle that has gone is drawn. All water moves by `way` radii in a frame.
+  struct Outcome {
+    float lag;
+    bool fades;
+  };
+  const auto outcome = [&](float way) {
+    Ellipsoids by;
+    Water water;
+    auto places = lattice(4, 4, 4);
+    std::vector<int> ids;
+    for (std::size_t i = 0; i < places.size(); ++i) ids.push_back(static_cast<int>(i));
+    const std::vector<Vec4> speeds(places.size(), Vec4{0, 60 * way * r, 0, 0});
+    water.draw(by, places, ids, 7, 0.25f, speeds);
+    for (Vec4& place : places) place.y += way * r;
+    places[0].x += 0.5f * d;
+    places.pop_back();
+    ids.pop_back();
+    const float target = water.draw(places).centre[0].x;
+    const Drawn now = water.draw(by, places, ids, 8, 0.25f, speeds);
+    return Outcome{(target - now.centre[0].x) / target, now.centre.size() > places.size()};
+  };
+  EXPECT_NEAR(outcome(rules.slow).lag, 0.75f, 0.01f);
+  EXPECT_TRUE(outcome(rules.slow).fades);
+  EXPECT_NEAR(outcome(0.5f * (rules.slow + rules.fast)).lag, 0.375f, 0.01f);
+  EXPECT_NEAR(outcome(1.01f * rules.fast).lag, 0, 1e-4f);
+  EXPECT_FALSE(outcome(1.01f * rules.fast).fades);
+}
+
 SIM_TEST(Ellipsoids, AFrameDrawnTwiceIsTheSameAndAJumpBlendsNothing) {
   Ellipsoids by;
   Water water;
