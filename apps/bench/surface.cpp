@@ -153,6 +153,12 @@ void run_surface(const SurfaceOptions& options) {
     base::write_file_atomically(options.json, json_of(rows, surfaces, options).dump(2) + "\n");
 }
 
+/// Refuses the options of the runs beside --frames 0, which leaves the runs out.
+void refuse_beside_shapes_only(const CLI::App& command) {
+  for (const char* option : {"--backend", "--warm-up", "--timed-frames", "--size"})
+    if (command.get_option(option)->count() > 0) throw CLI::ExcludesError("--frames 0", option);
+}
+
 constexpr const char* surface_rows_help =
     "Shapes have n_* coarsest particles' volume. Their particles lie in layers parallel to the surface, "
     "with\n"
@@ -178,7 +184,8 @@ void add_surface_command(CLI::App& app) {
       ->capture_default_str();
   add_n_star(*command, options->n_star);
   add_backend(*command, options->backend);
-  add_count(*command, "--frames", options->frames, 0, 100000, "Frames of popping; 0 = shapes only");
+  add_count(*command, "--frames", options->frames, 0, 100000,
+            "Frames of popping; 0 = shapes only, without --backend, --warm-up, --timed-frames and --size");
   add_count(*command, "--warm-up", options->warm_up, 0, 10000, "Frames before them that do not count");
   add_count(*command, "--timed-frames", options->timed_frames, 1, 100000, "Frames of the times");
   add_size(*command, options->size, "Picture of one eye in the runs, px");
@@ -186,7 +193,10 @@ void add_surface_command(CLI::App& app) {
       ->check(output_folder());
   command->add_option("--csv", options->csv, "File for the table")->check(output_file());
   command->add_option("--json", options->json, "File for the figures")->check(output_file());
-  command->callback([options] { run_surface(*options); });
+  command->callback([options, command] {
+    if (options->frames == 0) refuse_beside_shapes_only(*command);
+    run_surface(*options);
+  });
 }
 
 }  // namespace apps

@@ -22,7 +22,7 @@ namespace {
 struct BakeCommand {
   std::string scene, out, verify, protocol;
   std::string method = "HiRes", n_star = "32k", backend = "auto";
-  std::string pictures, camera = "view", overlay = "none", rate, ptpe;
+  std::string pictures, camera = "view", overlay = "none", surface, rate, ptpe;
   int frames = 600;
   double content_step_s = 0;
   bool force = false;
@@ -50,6 +50,7 @@ study::BakeOrder order_of(const BakeCommand& command) {
   order.fluid.content_step_s = command.content_step_s;
   order.fluid.overview = command.camera == "overview";
   order.fluid.paint_temperature = command.overlay == "temperature";
+  order.fluid.surface = command.surface;
   order.fluid.model = ptpe_model(command);
   if (!command.rate.empty()) order.fluid.fixed_rate = sim::parse_frame_rate(command.rate);
   order.frames = command.frames;
@@ -80,6 +81,12 @@ void bake(const BakeCommand& command) {
   const StopSignals signals;
   const study::BakeOrder order = order_of(command);
   const sim::BakeHeader header = study::header_of(order);
+  if (!command.surface.empty() && !study::draws(header))
+    throw base::Error(
+        "--surface " + command.surface,
+        "has no effect: the bake keeps particles alone, and " + header.method + " follows no picture",
+        "add --pictures WIDTHxHEIGHT, or leave --surface out and draw the particles as you wish "
+        "when they are shown");
   sim::BakeWriter::check_target(command.out, command.force);
   std::optional<sim::GlContext> context;
   if (study::draws(header)) context = sim::GlContext::make_headless();
@@ -133,9 +140,10 @@ void verify(const std::string& path) {
   if (h.reference_k)
     std::printf("  with the temperature of each, off by at most %.2g K\n", speed.temperature_error_k);
   if (!h.has_pictures()) return;
-  std::printf("  %dx%d pictures (%s%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
-              h.picture_height_px, h.camera.c_str(), h.overlay.empty() ? "" : ", temperature painted",
-              speed.pictures);
+  std::printf("  %dx%d pictures (%s%s%s) read, checked and decoded at %.0f frames/s\n", h.picture_width_px,
+              h.picture_height_px, h.camera.c_str(),
+              h.view.surface.empty() ? "" : (", of " + h.view.surface).c_str(),
+              h.overlay.empty() ? "" : ", temperature painted", speed.pictures);
 }
 
 void add_scene_options(CLI::App& sub, BakeCommand& command) {
@@ -153,6 +161,11 @@ void add_scene_options(CLI::App& sub, BakeCommand& command) {
             ->check(CLI::IsMember({"none", "temperature"}))
             ->capture_default_str()
             ->needs("--pictures"),
+        sub.add_option(
+               "--surface", command.surface,
+               "How particles are drawn in the pictures, kept or followed by the method; the bake then "
+               "records it. Default: ellipsoids, not recorded")
+            ->check(CLI::IsMember({"ellipsoids", "spheres"})),
         sub.add_option("--rate", command.rate,
                        "Mean and standard deviation of the frame rate that tau of Ours-TSp follows from: "
                        "16.9,3.2"),

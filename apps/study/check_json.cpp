@@ -27,6 +27,10 @@ base::Json setting_json(const study::CheckedSetting& checked, const study::Refre
   return json;
 }
 
+base::Json surface_json(const study::StimulusSpec& what) {
+  return what.surface.empty() ? base::Json() : base::Json(what.surface);
+}
+
 base::Json effects_json(const study::StimulusSpec& what) {
   return what.effects.empty() ? base::Json() : base::Json(what.effects);
 }
@@ -84,6 +88,7 @@ void add_measured(base::Json& json, const study::MeasuredReport& measured) {
     json["measured"].push_back({{"scene", one.what.scene},
                                 {"method", one.what.method},
                                 {"effects", effects_json(one.what)},
+                                {"surface", surface_json(one.what)},
                                 {"n_star", one.what.n_star},
                                 {"asked_mean_fps", one.setting.mean},
                                 {"asked_sd_fps", one.setting.sd},
@@ -126,6 +131,7 @@ void add_factors(base::Json& json, const study::Design& design) {
                              {"scene", cell.stimulus.scene},
                              {"method", cell.stimulus.method},
                              {"effects", effects_json(cell.stimulus)},
+                             {"surface", surface_json(cell.stimulus)},
                              {"n_star", cell.stimulus.n_star},
                              {"timing", study::setting_name(cell.setting)},
                              {"mean_fps", cell.setting.mean},
@@ -191,6 +197,7 @@ base::Json report_json(const CheckReport& report) {
     json["stimuli"].push_back({{"scene", one.what.scene},
                                {"method", one.what.method},
                                {"effects", effects_json(one.what)},
+                               {"surface", surface_json(one.what)},
                                {"n_star", one.what.n_star},
                                {"live", !one.live.empty()},
                                {"why_live", one.live},

@@ -14,9 +14,9 @@
 /// account (FrameAccount: particle counts, temporal acceleration, guard counts); format 1 stores only the
 /// particle counts. Since format 3 the header contains the view (BakedView) and the inputs of temporal
 /// acceleration (BakedTolerance). Since format 4 it contains the computed effects, and foam is stored. Since
-/// format 5 particles may have temperatures, and the header contains the overlay and the picture's effects. A
-/// bake without contents of format 5 is written in format 4. Equal content gives equal bytes (no date is
-/// stored).
+/// format 5 particles may have temperatures, and the header contains the overlay and the picture's effects.
+/// Since format 6 it may contain the surface of the pictures. A bake is written in the lowest of the formats
+/// 4 to 6 that holds its contents. Equal content gives equal bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -47,6 +47,8 @@ struct BakedView {
   /// no gaze). Empty = unknown (formats before 3).
   std::string gaze;
   std::vector<GazeKey> gaze_path;  ///< frames and points of the gaze, see GazeKey; empty = no path
+  /// How the picture's particles were drawn, surface_name(). Empty = not recorded, or a format before 6.
+  std::string surface = {};
 
   bool drawn() const { return width_px > 0; }
 };

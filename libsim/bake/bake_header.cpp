@@ -101,6 +101,10 @@ void check(const BakedView& view, const ByteReader& in) {
   within(!view.visual_angle_deg || is_angle(*view.visual_angle_deg),
          "angle of the eye's view is " + std::to_string(view.visual_angle_deg.value_or(0)) +
              " degrees; it must lie between 0 and 180");
+  within(
+      view.surface.empty() || (view.drawn() && (view.surface == "ellipsoids" || view.surface == "spheres")),
+      "surface is \"" + base::shortened(view.surface) +
+          "\"; it must be empty, or ellipsoids or spheres in a bake for which a picture was drawn");
   for (const GazeKey& key : view.gaze_path) {
     const auto& p = key.point_m;
     within(key.frame >= 0 && std::isfinite(p[0] + p[1] + p[2]),
@@ -152,6 +156,7 @@ Scene baked_scene(const BakeHeader& header) {
 }
 
 std::uint32_t format_of(const BakeHeader& header) {
+  if (!header.view.surface.empty()) return 6;
   const bool all_of_format_4 = !header.reference_k && header.overlay.empty() && !header.picture_effects;
   return all_of_format_4 ? 4 : 5;
 }
@@ -183,6 +188,8 @@ Bytes format_bake_header(const BakeHeader& header) {
   out.string(header.overlay);
   out.put(static_cast<std::uint8_t>(header.picture_effects ? 1 : 0));
   if (header.picture_effects) out.string(*header.picture_effects);
+  if (format_of(header) < 6) return bytes;
+  out.string(header.view.surface);
   return bytes;
 }
 
@@ -226,6 +233,7 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
               ", not 0 or 1");
     if (there) header.picture_effects = in.string(max_effects_text);
   }
+  if (format >= 6) header.view.surface = in.string(max_text);
   if (!in.rest().empty())
     in.fail("has a header that is " + std::to_string(in.rest().size()) + " bytes too long");
   check(header, in);

@@ -94,9 +94,9 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
 void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
                     int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
-/// The newest format; all formats from 1 on can be read. A file without contents of format 5 is written as
-/// format 4, bit for bit as before format 5 existed (format_of).
-inline constexpr std::uint32_t bake_format = 5;
+/// The newest format; all formats from 1 on can be read. A file without contents of the formats 5 and 6 is
+/// written as format 4, bit for bit as before they existed (format_of).
+inline constexpr std::uint32_t bake_format = 6;
 
 /// Writes and reads the facts at the front of particle and picture chunks: time and counts; since format 2
 /// one byte that says which of the following were measured (FactBits in codec.cpp), then these: the tolerance

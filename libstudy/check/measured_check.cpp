@@ -129,7 +129,7 @@ MeasuredReport judge_measured(const Protocol& protocol, const std::vector<Measur
 
 std::string stimulus_name(const StimulusSpec& what) {
   return what.method + " " + std::filesystem::path(what.scene).stem().string() + " " + what.n_star +
-         (what.effects.empty() ? "" : " " + what.effects);
+         (what.effects.empty() ? "" : " " + what.effects) + (what.surface.empty() ? "" : " " + what.surface);
 }
 
 std::string measured_table(const MeasuredReport& report) {

@@ -63,6 +63,7 @@ std::string Console::describe_cells(const PlannedTrial& trial) const {
     if (!all.empty()) all += ", then ";
     all += cell.stimulus.method + " " + cell.stimulus.n_star + " " + cell.stimulus.scene;
     if (!cell.stimulus.effects.empty()) all += ", effects " + cell.stimulus.effects;
+    if (!cell.stimulus.surface.empty()) all += ", " + cell.stimulus.surface;
     if (cell.setting.mean > 0) all += " at " + setting_name(cell.setting) + " frames/s";
   }
   return all;

@@ -56,6 +56,11 @@ const std::vector<std::string>& method_names() {
   return names;
 }
 
+const std::vector<std::string>& surface_names() {
+  static const std::vector<std::string> names{"ellipsoids", "spheres"};
+  return names;
+}
+
 const std::vector<std::string>& known_question_ids() {
   static const std::vector<std::string> ids{"realism",   "disorientation", "unrealism",     "dizziness",
                                             "confusion", gaze_question,    sharing_question};

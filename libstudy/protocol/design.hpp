@@ -18,11 +18,14 @@ struct StimulusSpec {
   std::string method;        ///< name of the method, such as "HiRes"
   std::string n_star;        ///< number of particles if all were at the coarsest level, such as "32k"
   std::string effects = {};  ///< level of effects: EffectSet::name; empty: the design does not vary effects
+  /// How the particles are drawn: "ellipsoids" or "spheres"; empty: not named, which draws ellipsoids.
+  std::string surface = {};
 
   bool operator==(const StimulusSpec&) const = default;
 };
 
-/// Name of the treatment compared within a group: "Ours", or "Ours, foam" if the design varies effects.
+/// Name of the treatment compared within a group: "Ours", or "Ours, foam" if the design varies effects, or
+/// "Ours, spheres" if it names surfaces.
 std::string treatment_name(const StimulusSpec& what);
 
 /// Levels of the factor effects that need no [[design.effect_set]]: no effects, and the effects of the scene
@@ -93,10 +96,11 @@ struct Design {
   bool paint_temperature = false;
   TimingSource timing = TimingSource::Settings;
   bool pairs = false;  ///< true: each trial shows two cells of a group; see pairs_of_group()
-  /// The standard of two-interval trials of format 3, with which every other cell of its group is paired;
-  /// `pairs` is then true. By factor: index of the standard's level; 0 for a between-subject factor, which is
-  /// ignored.
-  std::optional<std::vector<int>> standard;
+  /// The standard of two-interval trials of format 3; `pairs` is then true. Every other cell of a group is
+  /// paired with the standard that has its levels of the factors without a level here. By factor: index of
+  /// the standard's level; none for a between-subject factor, and for a factor that the standard does not
+  /// name.
+  std::optional<std::vector<std::optional<int>>> standard;
   /// Adaptive trials of format 3; none: every cell, or pair, is shown `repetitions` times.
   std::optional<Procedure> procedure;
   int repetitions = 1;  ///< trials of each cell, or pair, in a session; more than 1 only in format 3
@@ -117,10 +121,10 @@ std::vector<std::vector<int>> cell_groups(const Design& design);
 int trials_of_group(const Design& design);
 
 /// The pairs of cells of one group that two-interval trials show, in file order: all unordered pairs, or
-/// every other cell with the standard.
+/// every other cell with its standard.
 std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group);
 
-/// True if the cell has the standard's level of every within-subject factor. Requires Design::standard.
+/// True if the cell has the level of every factor that Design::standard names. Requires Design::standard.
 bool is_standard(const Design& design, const Cell& cell);
 
 /// The level of a factor of format 3 as text, such as "h50".

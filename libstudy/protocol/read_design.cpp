@@ -278,7 +278,10 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
 }  // namespace
 
 std::string treatment_name(const StimulusSpec& what) {
-  return what.effects.empty() ? what.method : what.method + ", " + what.effects;
+  std::string out = what.method;
+  for (const std::string* level : {&what.effects, &what.surface})
+    if (!level->empty()) out += ", " + *level;
+  return out;
 }
 
 const std::string& level_name(const Design& design, const Cell& cell, std::size_t factor) {
@@ -297,69 +300,6 @@ bool share_level(const Design& design, const Cell& a, const Cell& b) {
   return std::any_of(
       design.never_adjacent.begin(), design.never_adjacent.end(),
       [&](const std::string& factor) { return level_of(design, a, factor) == level_of(design, b, factor); });
-}
-
-namespace {
-
-bool same_group(const Design& design, const Cell& a, const Cell& b) {
-  if (design.factors.empty())
-    return a.stimulus.scene == b.stimulus.scene && a.stimulus.n_star == b.stimulus.n_star;
-  for (std::size_t i = 0; i < design.factors.size(); ++i)
-    if (design.factors[i].between && a.levels[i] != b.levels[i]) return false;
-  return true;
-}
-
-/// Number of tracks of an adaptive procedure in one group: combinations of the levels of all factors but the
-/// procedure's, without the standard.
-int track_count(const Design& design, const std::vector<int>& group) {
-  std::set<std::vector<int>> tracks;
-  for (const int index : group) {
-    const Cell& cell = design.cells[static_cast<std::size_t>(index)];
-    if (design.standard && is_standard(design, cell)) continue;
-    std::vector<int> levels = cell.levels;
-    levels[design.procedure->factor] = 0;
-    tracks.insert(levels);
-  }
-  return static_cast<int>(tracks.size());
-}
-
-}  // namespace
-
-bool is_standard(const Design& design, const Cell& cell) {
-  for (std::size_t i = 0; i < design.factors.size(); ++i)
-    if (!design.factors[i].between && cell.levels[i] != (*design.standard)[i]) return false;
-  return true;
-}
-
-std::vector<std::vector<int>> cell_groups(const Design& design) {
-  std::vector<std::vector<int>> out;
-  for (std::size_t i = 0; i < design.cells.size(); ++i) {
-    if (i == 0 || !same_group(design, design.cells[i - 1], design.cells[i])) out.emplace_back();
-    out.back().push_back(static_cast<int>(i));
-  }
-  return out;
-}
-
-std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group) {
-  std::vector<std::pair<int, int>> out;
-  if (design.standard) {
-    const auto standard = std::find_if(group.begin(), group.end(), [&](int i) {
-      return is_standard(design, design.cells[static_cast<std::size_t>(i)]);
-    });
-    for (const int cell : group)
-      if (standard != group.end() && cell != *standard) out.emplace_back(cell, *standard);
-    return out;
-  }
-  for (std::size_t i = 0; i < group.size(); ++i)
-    for (std::size_t j = i + 1; j < group.size(); ++j) out.emplace_back(group[i], group[j]);
-  return out;
-}
-
-int trials_of_group(const Design& design) {
-  const auto group = cell_groups(design).front();
-  if (design.procedure) return track_count(design, group) * design.procedure->trials;
-  const auto pairs = static_cast<int>(pairs_of_group(design, group).size());
-  return design.repetitions * (design.pairs ? pairs : static_cast<int>(group.size()));
 }
 
 void read_assignment(const base::TomlTable& table, Design& design) {

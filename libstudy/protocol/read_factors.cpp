@@ -19,7 +19,7 @@ constexpr base::Range trace_ms_range{shortest_trace_ms, longest_trace_ms};
 
 /// The keys that [stimulus] or a level of a factor sets.
 struct StimulusKeys {
-  std::optional<std::string> scene, method, n_star, effects;
+  std::optional<std::string> scene, method, n_star, effects, surface;
   std::optional<TimingProfile> timing;
 };
 
@@ -39,6 +39,7 @@ StimulusKeys read_keys(const base::TomlTable& table) {
                  "write a whole number, or one with k for 1,024, for example \"32k\"");
   }
   if (table.has("effects")) out.effects = id_of(table, "effects");
+  if (table.has("surface")) out.surface = table.choice("surface", surface_names());
   if (table.has("timing")) out.timing = read_profile(table.table("timing"));
   return out;
 }
@@ -50,6 +51,7 @@ std::vector<std::string> names_of(const StimulusKeys& keys) {
   if (keys.method) out.emplace_back("method");
   if (keys.n_star) out.emplace_back("n_star");
   if (keys.effects) out.emplace_back("effects");
+  if (keys.surface) out.emplace_back("surface");
   if (keys.timing) out.emplace_back("timing");
   return out;
 }
@@ -59,6 +61,7 @@ void lay_over(StimulusKeys& below, const StimulusKeys& above) {
   if (above.method) below.method = above.method;
   if (above.n_star) below.n_star = above.n_star;
   if (above.effects) below.effects = above.effects;
+  if (above.surface) below.surface = above.surface;
   if (above.timing) below.timing = above.timing;
 }
 
@@ -85,11 +88,11 @@ ReadFactor read_factor(const base::TomlTable& table) {
     out.keys.push_back(read_keys(level));
     if (names_of(out.keys.back()) != names_of(out.keys.front()))
       level.fail("name", "= " + base::toml_quoted(name) + " sets other keys than the first level",
-                 "set the same of scene, method, n_star, effects and timing in each level");
+                 "set the same of scene, method, n_star, effects, surface and timing in each level");
   }
   if (names_of(out.keys.front()).empty())
     levels.front().fail("name", "= " + base::toml_quoted(out.factor.levels.front()) + " sets no key",
-                        "write scene, method, n_star, effects or timing");
+                        "write scene, method, n_star, effects, surface or timing");
   return out;
 }
 
@@ -192,7 +195,7 @@ Cell cell_of(const base::TomlTable& root, const StimulusKeys& keys, double durat
   };
   Cell cell;
   cell.stimulus = {needed(keys.scene, "scene"), needed(keys.method, "method"), needed(keys.n_star, "n_star"),
-                   keys.effects.value_or("")};
+                   keys.effects.value_or(""), keys.surface.value_or("")};
   const TimingProfile timing = needed(keys.timing, "timing");
   try {
     cell.setting = setting_of(timing, duration_s);
@@ -218,17 +221,41 @@ std::vector<std::string> used_effects(std::vector<Cell>& cells) {
   return out;
 }
 
+/// Checks that every cell is a standard or is compared with one, and that every standard is compared.
+void check_standards(const base::TomlTable& table, const Design& design) {
+  for (const auto& group : cell_groups(design)) {
+    std::set<int> paired;
+    for (const auto& [cell, standard] : pairs_of_group(design, group)) paired.insert({cell, standard});
+    const auto alone = std::find_if(group.begin(), group.end(), [&](int i) { return !paired.contains(i); });
+    if (paired.empty())
+      table.fail("standard", "is no cell of the design", "name a combination that exists in each group");
+    if (alone == group.end()) continue;
+    const Cell& cell = design.cells[static_cast<std::size_t>(*alone)];
+    table.fail("standard",
+               std::string(is_standard(design, cell) ? "has no cell to compare with "
+                                                     : "has no cell for the comparison with ") +
+                   cell_name(design, cell),
+               "list both cells as [[combination]], or name a level of each within-subject factor");
+  }
+}
+
 void read_standard(const base::TomlTable& table, Design& design) {
   if (!table.has("standard")) return;
   if (!design.pairs) table.fail("standard", "needs pairs = true", "write pairs = true, or remove standard");
   const auto named = table.table("standard");
-  std::vector<int> levels;
-  for (const DesignFactor& factor : design.factors)
-    levels.push_back(factor.between ? 0 : level_index(named, factor));
+  std::vector<std::optional<int>> levels;
+  bool any = false;
+  for (const DesignFactor& factor : design.factors) {
+    levels.emplace_back();
+    if (factor.between || !named.has(factor.name)) continue;
+    levels.back() = level_index(named, factor);
+    any = true;
+  }
+  if (!any)
+    table.fail("standard", "names no level of a within-subject factor",
+               "write a level, as in standard = {hitch = \"none\"}, or remove it");
   design.standard = levels;
-  for (const auto& group : cell_groups(design))
-    if (pairs_of_group(design, group).size() + 1 != group.size())
-      table.fail("standard", "is no cell of the design", "name a combination that exists in each group");
+  check_standards(table, design);
 }
 
 void check_groups_alike(const base::TomlTable& root, const base::TomlTable& table, const Design& design) {

@@ -65,6 +65,11 @@ void read_positive(const base::TomlTable& table, const Design& design, Procedure
   if (design.pairs) {
     if (!design.standard)
       table.fail("kind", "needs a standard to compare with", "write standard in [design], or remove pairs");
+    if (!(*design.standard)[out.factor])
+      table.fail("factor",
+                 "= " + base::toml_quoted(design.factors[out.factor].name) +
+                     " has no level in standard, so the standard would change with the level",
+                 "name a level of this factor in standard");
     out.comparison = table.choice("positive", {"comparison", "standard"}) == "comparison";
   } else {
     out.positive = static_cast<int>(table.integer("positive", {0, 100}));

@@ -73,6 +73,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "number of particles if all were at the coarsest level; \"32k\" = 32,768"},
       {"stimulus", "effects", "text", "", "those of the scene",
        "none: no effects. scene: those of the scene's file. Another name has a table [[design.effect_set]]"},
+      {"stimulus", "surface", "text", in_quotes(surface_names()), "ellipsoids",
+       "how the particles are drawn ([methods.md](methods.md#the-drawn-surface)). If written, the word "
+       "stands "
+       "beside the method in reports and files"},
       {"stimulus", "timing", "table", "", where_needed, "how long each frame stays on"},
 
       {"stimulus.timing", "profile", "text", "\"moments\", \"hitches\", \"floor\", \"trace\"", "",
@@ -168,7 +172,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design", "pairs", "true or false", "", "false",
        "each trial shows two cells of a group: all unordered pairs"},
       {"design", "standard", "table", "", "all pairs",
-       "format 3, with pairs: each trial shows this cell and another one, in an order dealt evenly"},
+       "format 3, with pairs: each trial shows a cell and its standard, in an order dealt evenly"},
       {"design", "repetitions", "whole number", "[1, 200]", "1",
        "format 3: trials of each cell, or pair, in a session; not with [procedure]"},
       {"design", "groups", "whole number", "[1, 100]", "1",
@@ -186,7 +190,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "database who took part and did not drop out; another database has a quota of its own. paper_random: "
        "drawn for each participant"},
 
-      {"design.standard", "FACTOR", "text", "", "", "a level of each within-subject factor"},
+      {"design.standard", "FACTOR", "text", "", "that of the comparison",
+       "a level of a within-subject factor; at least one is named, and that of a procedure"},
 
       {"design.moments", "scene", "text", "", "", "as in design.scene"},
       {"design.moments", "method", "text", "", "", "as in design.method"},

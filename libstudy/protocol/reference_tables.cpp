@@ -8,7 +8,7 @@ const std::vector<base::TableReference>& protocol_tables() {
       {"", "The file itself", "Stands before the first table."},
       {"stimulus", "[stimulus]",
        R"(Format 3: what each stimulus shows unless a level of a factor sets it. Each key must be set here or by
-the levels of one factor, except effects.)"},
+the levels of one factor, except effects and surface.)"},
       {"stimulus.timing", "timing",
        R"(How long each frame stays on. `profile` selects the keys:
 
@@ -26,7 +26,7 @@ remains. latency_ms and animation_error_ms go with each profile and need `conten
        "cells."},
       {"factor.level", "[[factor.level]]",
        R"(A level: its name, and what it shows. It sets keys as [stimulus] has them: scene, method, n_star, effects,
-timing. All levels of a factor set the same keys, and no other factor sets them.)"},
+surface, timing. All levels of a factor set the same keys, and no other factor sets them.)"},
       {"procedure", "[procedure]",
        R"(Format 3: adaptive trials. A track is a sequence of trials that differ only in the level of `factor`; each
 combination of the other within-subject levels has its own track, and tracks are interleaved at random.
@@ -57,7 +57,9 @@ Format 2 has fixed factors. Every scene, n_*, method and level of effects, and u
 every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a
 participant meets `groups` of them, one after another.)"},
       {"design.standard", "standard",
-       "The standard of two-interval trials, as in `standard = {hitch = \"none\"}`."},
+       R"(The standard of two-interval trials, as in `standard = {hitch = "none"}`. A cell is compared with the
+standard that has the same level of each within-subject factor that is not named here. So `standard = {surface
+= "spheres"}` compares two surfaces at each scene and method, and never two scenes.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",

@@ -91,8 +91,18 @@ std::string design_section(const Field& root) {
     std::string standard;
     for (const auto& [factor, level] : design["standard"].members())
       standard += (standard.empty() ? "" : ", ") + svg::escaped(factor) + " " + words(level);
-    more += paragraph("Each trial shows a pair: a comparison and the standard, " + standard + ".");
+    std::string same;
+    for (const Field& factor : design["factors"].entries())
+      if (factor["vary"].words() != "between" && !design["standard"][factor["name"].words()].exists())
+        same += (same.empty() ? "" : ", ") + words(factor["name"]);
+    more += paragraph("Each trial shows a pair: a comparison and the standard, " + standard +
+                      (same.empty() ? "" : ", both with the same level of " + same) + ".");
   }
+  std::string surfaces;
+  for (const auto& [surface, level] : design["surfaces"].members())
+    surfaces += (surfaces.empty() ? "" : "; ") + svg::escaped(surface) +
+                (level.words().empty() ? "" : " (" + words(level) + ")");
+  if (!surfaces.empty()) more += paragraph("The particles were drawn as " + surfaces + ".");
   if (design["procedure"].exists())
     more += paragraph("The procedure " + words(design["procedure"]["kind"]) + " chose the level of " +
                       words(design["procedure"]["factor"]) + " in each trial, " +

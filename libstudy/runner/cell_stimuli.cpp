@@ -9,6 +9,7 @@
 #include "libstudy/display/null.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -34,6 +35,10 @@ std::string describe_live(const Protocol& protocol, const std::string& backend) 
     if (!protocol.design.effects.empty()) text += ", effects " + levels_in_words(protocol, scene);
     if (protocol.design.paint_temperature) text += ", painted " + temperatures_in_words(protocol, scene);
   }
+  std::set<std::string> surfaces;
+  for (const Cell& cell : protocol.design.cells)
+    if (!cell.stimulus.surface.empty()) surfaces.insert(cell.stimulus.surface);
+  if (!surfaces.empty()) text += ", drawn as " + base::joined({surfaces.begin(), surfaces.end()});
   return text;
 }
 
@@ -95,6 +100,7 @@ StimulusChoice CellStimuli::choice_of(const Cell& cell) const {
   choice.scene = base::find_input(cell.stimulus.scene);
   choice.method = cell.stimulus.method;
   choice.n_star = cell.stimulus.n_star;
+  choice.surface = cell.stimulus.surface;
   const CellEffects effects = cell_effects(protocol_, cell.stimulus);
   choice.effects = effects.water;
   choice.picture_effects = effects.picture;
@@ -106,7 +112,11 @@ StimulusChoice CellStimuli::choice_of(const Cell& cell) const {
 }
 
 CellStimuli::Made CellStimuli::wanted_for(const Cell& cell) const {
-  if (const FoundBake* bake = bakes_.of(cell)) return {{}, {}, bake->path};
+  if (const FoundBake* bake = bakes_.of(cell)) {
+    Made wanted{{}, {}, bake->path};
+    wanted.what.surface = cell.stimulus.surface;
+    return wanted;
+  }
   if (!shown_) return {};
   Made wanted{cell.stimulus, {}, {}};
   const bool by_rate = sim::traits_of(sim::parse_method(cell.stimulus.method)).temporal;
@@ -119,6 +129,7 @@ std::unique_ptr<Stimulus> CellStimuli::make(const Cell& cell, const Made& wanted
   if (wanted.bake.empty()) return make_stimulus(choice_of(cell));
   StimulusChoice choice = choice_;
   choice.bake = wanted.bake;
+  choice.surface = wanted.what.surface;
   return make_stimulus(choice);
 }
 

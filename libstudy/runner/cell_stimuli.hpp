@@ -39,7 +39,8 @@ class CellStimuli final : public StimulusSource {
   StimulusChoice choice_of(const Cell& cell) const;
 
  private:
-  /// Identifies the current stimulus. For a bake only `bake` is set; for the empty stimulus nothing is set.
+  /// Identifies the current stimulus. For a bake only `bake` and the surface are set; for the empty
+  /// stimulus nothing is set.
   /// `rate`, the cell's frame rate, is set only for methods whose fluid depends on it (temporal
   /// acceleration).
   struct Made {

@@ -99,7 +99,8 @@ std::optional<PictureFeatures> read_features(const std::filesystem::path& path, 
 
 std::string stimulus_words(const StimulusSpec& stimulus) {
   return stimulus.scene + ", " + stimulus.method + ", " + stimulus.n_star +
-         (stimulus.effects.empty() ? "" : ", effects " + stimulus.effects);
+         (stimulus.effects.empty() ? "" : ", effects " + stimulus.effects) +
+         (stimulus.surface.empty() ? "" : ", " + stimulus.surface);
 }
 
 PictureFeatures CellFeatures::read_or_measure(const Cell& cell, std::int64_t start_frame) const {

@@ -47,6 +47,19 @@ std::string painted_words(const std::optional<sim::TemperatureScale>& scale) {
   return scale ? ", painted " + scale->words() : "";
 }
 
+/// The choice's options of the renderer, with its surface.
+sim::RenderOptions render_options(const StimulusChoice& choice) {
+  sim::RenderOptions out = choice.render;
+  if (!choice.surface.empty()) out.surface = sim::parse_surface(choice.surface);
+  return out;
+}
+
+/// Names the surface unless it is the usual one.
+std::string surface_words(sim::Surface surface) {
+  return surface == sim::RenderOptions{}.surface ? ""
+                                                 : std::string(", drawn as ") + sim::surface_name(surface);
+}
+
 /// Point at which the forward axis of an eye meets its picture, px from the lower left. This is not the
 /// middle of the picture, because a headset's frusta are off-centre.
 std::pair<double, double> straight_ahead(const sim::View& view) {
@@ -65,7 +78,7 @@ std::unique_ptr<Stimulus> from_bake(const StimulusChoice& choice) {
                       "bake with the protocol's content step, or change it there");
   }
   if (bake->header().has_pictures()) return std::make_unique<BakedPictures>(std::move(bake));
-  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing, sim::RenderOptions{},
+  return std::make_unique<BakedParticles>(std::move(bake), choice.viewing, render_options(choice),
                                           choice.paint_temperature);
 }
 
@@ -115,9 +128,10 @@ BakedPictures::~BakedPictures() {
 
 std::string BakedPictures::description() const {
   const sim::BakeHeader& h = bake_->header();
-  return describe(*bake_, "pictures") + ", " + std::to_string(h.picture_width_px) + "x" +
-         std::to_string(h.picture_height_px) + " from " + h.camera +
-         (h.overlay.empty() ? "" : painted_words(painted(sim::baked_scene(h), true)));
+  return describe(*bake_, "pictures") +
+         (h.view.surface.empty() ? "" : surface_words(sim::parse_surface(h.view.surface))) + ", " +
+         std::to_string(h.picture_width_px) + "x" + std::to_string(h.picture_height_px) + " from " +
+         h.camera + (h.overlay.empty() ? "" : painted_words(painted(sim::baked_scene(h), true)));
 }
 
 void BakedPictures::start(std::int64_t start_step) {
@@ -172,7 +186,7 @@ BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing vi
 }
 
 std::string BakedParticles::description() const {
-  return describe(*bake_, "particles") + painted_words(painted_);
+  return describe(*bake_, "particles") + surface_words(options_.surface) + painted_words(painted_);
 }
 
 FrameFacts BakedParticles::prepare(std::int64_t step) {
@@ -276,6 +290,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   if (choice.picture_effects) scene.picture_effects = *choice.picture_effects;
   sim::SimulationOptions options;
   const auto backend = sim::choose_backend(choice.backend);
+  const sim::RenderOptions render = render_options(choice);
   if (choice.setting) {
     options = sim::to_options(*choice.setting, backend, 1);
   } else {
@@ -292,7 +307,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   const std::string description = "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
                                   std::to_string(options.n_star) + ", on " +
                                   sim::backend_name(options.backend) + ", scene " + scene.sha256 +
-                                  live_effects(choice, scene) +
+                                  live_effects(choice, scene) + surface_words(render.surface) +
                                   (choice.setting ? ", at " + sim::to_text(*choice.setting) : "");
   // The first call settles the fluid; each later call starts from the settled state.
   const auto make = [scene, options]() mutable {
@@ -301,7 +316,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
     return simulation;
   };
   return std::make_unique<LiveFluid>(sim::acting_scene(scene, options.method), dt, description, make,
-                                     choice.viewing, choice.render, choice.paint_temperature);
+                                     choice.viewing, render, choice.paint_temperature);
 }
 
 std::unique_ptr<Stimulus> make_stimulus(const StimulusChoice& choice) {

@@ -155,10 +155,13 @@ struct StimulusChoice {
   /// Live fluid only: effects that replace the effects of the scene's file. None = the effects of the file.
   std::optional<std::vector<sim::Effect>> effects = {};
   std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< live fluid only: as `effects`
+  /// How the particles are drawn, sim::surface_name(). Empty: as `render` says, and a new bake does not
+  /// record it. Ignored for a bake with pictures, which are drawn already.
+  std::string surface = {};
   bool paint_temperature = false;  ///< paints temperatures over the water, if bake or scene have temperatures
   Viewing viewing;                 ///< ignored for a bake with pictures
   bool overview = false;           ///< live fluid only: uses the camera Scene::overview
-  sim::RenderOptions render = {};  ///< live fluid only
+  sim::RenderOptions render = {};  ///< ignored for a bake with pictures; see `surface`
 };
 
 /// Makes the stimulus of a choice. base::Error for files that cannot be read, unknown words, and a bake whose

@@ -134,7 +134,8 @@ std::string levels_text(const Design& design, const Cell& cell) {
 void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
   Statement insert(
       database,
-      "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?,nullif(?,''),nullif(?,''),nullif(?,''),nullif(?,''))");
+      "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?,nullif(?,''),nullif(?,''),nullif(?,''),nullif(?,''),"
+      "nullif(?,''))");
   int index = 0;
   for (const Cell& cell : protocol.design.cells) {
     std::string set;
@@ -144,7 +145,7 @@ void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Pro
         .bind_all(protocol_id, index++, cell.stimulus.scene, cell.stimulus.method, cell.stimulus.n_star,
                   cell.setting.mean, cell.setting.sd, cell.setting.duration_s, cell.stimulus.effects, set,
                   levels_text(protocol.design, cell),
-                  cell.setting.profile ? profile_text(*cell.setting.profile) : "")
+                  cell.setting.profile ? profile_text(*cell.setting.profile) : "", cell.stimulus.surface)
         .run();
   }
 }

@@ -135,7 +135,9 @@ const toml::node& TomlTable::State::need(std::string_view key) const {
 }
 
 double TomlTable::State::in_range(const toml::node& node, std::string_view key, Range range) const {
-  const auto value = node.value<double>();
+  // toml++ gives no double for a whole number of more than 53 bits.
+  const auto whole = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+  const auto value = whole ? static_cast<double>(*whole) : node.value<double>();
   if (!node.is_number() || !value) fail(&node, key, "must be a number", "write it without quotes");
   if (!std::isfinite(*value)) fail(&node, key, "must be finite", "write an ordinary number");
   if (*value < range.min || *value > range.max) {

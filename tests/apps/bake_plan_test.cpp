@@ -113,6 +113,16 @@ TEST(BakePlan, ScenesOfOneNameAreToldApart) {
   EXPECT_THAT(files(plan), ElementsAre("dam_32k_HiRes-2.bake", "dam_32k_HiRes.bake"));
 }
 
+TEST(BakePlan, EachSurfaceHasABakeOfItsOwn) {
+  const auto plan = plan_of(test::shipped_text("surface"));
+  EXPECT_EQ(baked(plan), 12);
+  EXPECT_EQ(files(plan).size(), 12u);
+  EXPECT_EQ(plan.front().file, "single_dam_32k_HiRes_spheres.bake");
+  const auto protocol = study::parse_protocol(test::shipped_text("surface"), "test");
+  EXPECT_EQ(study::order_of(protocol, plan.front(), {}).fluid.surface, "spheres");
+  EXPECT_EQ(study::order_of(protocol, plan.back(), {}).fluid.surface, "ellipsoids");
+}
+
 study::BakeOrder order() {
   study::BakeOrder out;
   out.fluid.scene = base::resource("data/scenes/single_dam.toml");
@@ -152,6 +162,27 @@ TEST(BakeOrder, EveryDepartureOfTheFluidIsNamed) {
   EXPECT_THAT(after([](study::BakeOrder& o) { o.fluid.model.a = 30; }), HasSubstr("a = 30"));
   EXPECT_EQ(after([](study::BakeOrder& o) { o.scene_gaze = true; }),
             "gaze along the scene's keys instead of gaze on the middle of the picture");
+}
+
+TEST(BakeOrder, PicturesOfAnotherSurfaceDepart) {
+  const auto between = [](const std::string& found, const std::string& wanted) {
+    study::BakeOrder a = order(), b = order();
+    a.fluid.surface = found;
+    b.fluid.surface = wanted;
+    return base::joined(study::fluid_departures(study::header_of(a), study::header_of(b)));
+  };
+  EXPECT_EQ(between("spheres", "ellipsoids"), "pictures of spheres instead of ellipsoids");
+  EXPECT_EQ(between("ellipsoids", "spheres"), "pictures of ellipsoids instead of spheres");
+  EXPECT_EQ(between("spheres", ""), "pictures of spheres instead of ellipsoids");
+  EXPECT_EQ(between("", "ellipsoids"), "pictures of a surface that is not recorded instead of ellipsoids");
+  for (const char* surface : {"", "ellipsoids", "spheres"}) EXPECT_EQ(between(surface, surface), "");
+  EXPECT_EQ(between("ellipsoids", ""), "");
+  // A bake of particles whose method follows no picture is drawn when it is shown.
+  study::BakeOrder particles = order();
+  particles.fluid.method = "HiRes";
+  particles.fluid.surface = "spheres";
+  EXPECT_EQ(study::header_of(particles).view.surface, "");
+  EXPECT_EQ(sim::format_of(study::header_of(particles)), 4u);
 }
 
 TEST(BakeOrder, EveryDepartureOfThePictureIsNamed) {

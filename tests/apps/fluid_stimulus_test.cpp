@@ -270,6 +270,30 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   EXPECT_GT(moved, want.size() / 50);
 }
 
+TEST_F(FluidStimulusGl, ABakeOfParticlesIsDrawnWithTheSurfaceOfTheChoice) {
+  sim::BakeHeader header = bake_test::header(1);
+  header.scene_text = scene_text();
+  {
+    sim::BakeWriter writer(folder_ / "a.bake", header);
+    writer.add_frame(0, bake_test::particles(0), bake_test::account(0));
+    writer.finish();
+  }
+  study::HeadlessDisplay display(96, 54);
+  const auto drawn = [&](const std::string& surface) {
+    study::StimulusChoice choice;
+    choice.bake = folder_ / "a.bake";
+    choice.surface = surface;
+    const auto stimulus = study::make_stimulus(choice);
+    EXPECT_EQ(stimulus->description().find(", drawn as spheres") != std::string::npos, surface == "spheres");
+    stimulus->prepare(0);
+    display.render(*stimulus);
+    display.present(clock_.now_ns(), clock_);
+    return shown(display);
+  };
+  EXPECT_EQ(drawn(""), drawn("ellipsoids"));
+  EXPECT_NE(drawn("spheres"), drawn("ellipsoids"));
+}
+
 TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAPicture) {
   study::HeadlessDisplay display(64, 36);
   std::vector<sim::Looks> looks;

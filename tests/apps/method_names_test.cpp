@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libsim/methods/method.hpp"
+#include "libsim/render/fluid_renderer.hpp"
 #include "libstudy/protocol/names.hpp"
 #include "libstudy/protocol/reference.hpp"
 #include "stats/base/file.hpp"
@@ -19,6 +20,13 @@ std::vector<std::string> solver_methods() {
 }
 
 TEST(MethodNames, ProtocolsKnowTheMethodsOfTheSolver) { EXPECT_EQ(study::method_names(), solver_methods()); }
+
+TEST(MethodNames, ProtocolsKnowTheSurfacesOfTheRenderer) {
+  for (const std::string& name : study::surface_names())
+    EXPECT_EQ(sim::surface_name(sim::parse_surface(name)), name);
+  EXPECT_EQ(study::surface_names().front(), sim::surface_name(sim::RenderOptions{}.surface))
+      << "the usual one";
+}
 
 TEST(MethodNames, ThePagesNameEachMethod) {
   std::string all;

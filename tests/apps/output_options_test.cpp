@@ -77,6 +77,8 @@ class OutputOptionsE2e : public ::testing::Test {
             effects_ + " --csv ",
             effects_ + " --markdown ",
             effects_ + " --svg ",
+            surface_ + " --csv ",
+            surface_ + " --json ",
             growth_ + " --csv ",
             growth_ + " --svg ",
             accuracy_ + " --db ",
@@ -102,6 +104,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-study check protocols/demo.toml --size 64x36 --preview ",
             table1_ + " --svg ",
             table1_ + " --pictures ",
+            surface_ + " --pictures ",
             table1_ + " --checkpoints-to ",
             table2_ + " --svg ",
             "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --size 64x36 --png "};
@@ -129,6 +132,7 @@ class OutputOptionsE2e : public ::testing::Test {
       "vip-bench effects data/scenes/splash.toml --n-star 64 --frames 1 --warm-up 0";
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
+  inline static const std::string surface_ = "vip-bench surface --surface spheres --n-star 64 --frames 0";
   inline static const std::string table2_ =
       "vip-bench table2 --scene SingleDam --n-star 64 --methods LoRes --frames 2 --warm-up 0";
   const TemporaryFolder folder_, share_;
@@ -162,8 +166,8 @@ TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
           std::string("data/scenes/single_dam.toml")}) {
       if (const auto at = line.find(read); at != std::string::npos) line.replace(at, read.size(), input);
     }
-    // Left out: table1 and table2, which read no input file, and bake, which reads its scene before it checks
-    // the output.
+    // Left out: table1, table2 and surface, which read no input file, and bake, which reads its scene before
+    // it checks the output.
     if (line.find(input) == std::string::npos || line.find("bake") != std::string::npos) continue;
     ++checked;
     const Ended ended = program(line + below);
@@ -181,7 +185,8 @@ TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
   std::vector<fs::path> targets;
   for (const std::string& line : all) {
     targets.push_back(folder_ / ("new" + std::to_string(targets.size())) / "deep" / "out");
-    const bool table = line.starts_with(table1_) || line.starts_with(table2_) || line.starts_with(accuracy_);
+    const bool table = line.starts_with(table1_) || line.starts_with(table2_) ||
+                       line.starts_with(accuracy_) || line.starts_with(surface_);
     const std::size_t option = table ? line.rfind(" --") : line.size();
     outputs[line.substr(0, option)] += line.substr(option) + targets.back().string();
   }

@@ -71,6 +71,9 @@ TEST_F(SurfaceE2e, OneSurfaceHasOneColumn) {
   EXPECT_EQ(table.size(), 50u);
   EXPECT_FALSE(table.front().contains("ellipsoids"));
   EXPECT_EQ(this->table("surface --surface blobs").exit_code, 2) << "an unknown word";
+  const auto shapes = this->table("surface --frames 0 --backend cpu");
+  EXPECT_EQ(shapes.exit_code, 2);
+  EXPECT_THAT(shapes.out, ::testing::HasSubstr("--frames 0 excludes --backend"));
 }
 
 }  // namespace

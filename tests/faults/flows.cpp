@@ -255,6 +255,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(10),
       upgrade_from(11),
       upgrade_from(12),
+      upgrade_from(13),
   };
   return flows;
 }

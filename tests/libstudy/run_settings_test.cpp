@@ -88,7 +88,7 @@ TEST_F(RunSettings, OptionsWithoutAnyHaveNone) {
 TEST_F(RunSettings, TheLastCostsOfASessionAreReadAndDamagedOnesAreAnError) {
   const auto path = study_with("{}");
   const std::vector<FrameCosts> first{{{"a.toml", "HiRes", "32k"}, 4.5, 6}},
-      last{{{"a.toml", "Ours", "32k"}, 2, 3}};
+      last{{{"a.toml", "Ours", "32k", "", "spheres"}, 2, 3}};
   const auto session = [&] { return read_tasks(path).protocols.at(0).sessions.at(0); };
   const auto log = [&](const std::string& detail) {
     Store store(path, sqlite::Open::Write);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "stats/inference/binomial.hpp"
 #include "stats/inference/describe.hpp"
@@ -106,6 +107,35 @@ std::string value_words(const Design& design, const Question& question) {
 
 }  // namespace
 
+namespace {
+
+/// The level of the factor that sets the surface, such as "surface spheres"; empty if all cells with this
+/// surface do not share the level of a factor that other cells lack.
+std::string level_of_surface(const Design& design, const std::string& surface) {
+  for (std::size_t f = 0; f < design.factors.size(); ++f) {
+    std::set<int> with, without;
+    for (const Cell& cell : design.cells)
+      (cell.stimulus.surface == surface ? with : without).insert(cell.levels[f]);
+    if (with.size() == 1 && !without.contains(*with.begin()))
+      return design.factors[f].name + " " +
+             design.factors[f].levels.at(static_cast<std::size_t>(*with.begin()));
+  }
+  return "";
+}
+
+/// By surface that the protocol names, the level that sets it; empty where the protocol names none.
+Json surfaces_json(const Design& design) {
+  std::set<std::string> surfaces;
+  for (const Cell& cell : design.cells)
+    if (!cell.stimulus.surface.empty()) surfaces.insert(cell.stimulus.surface);
+  Json out = Json::object();
+  for (const std::string& one : surfaces)
+    out[one] = surfaces.size() > 1 ? level_of_surface(design, one) : "every stimulus";
+  return out;
+}
+
+}  // namespace
+
 Json design_json(const Design& design) {
   Json factors = Json::array();
   for (const DesignFactor& factor : design.factors)
@@ -115,11 +145,11 @@ Json design_json(const Design& design) {
   if (design.standard) {
     Json standard = Json::object();
     for (std::size_t f = 0; f < design.factors.size(); ++f)
-      if (!design.factors[f].between)
-        standard[design.factors[f].name] =
-            design.factors[f].levels.at(static_cast<std::size_t>((*design.standard)[f]));
+      if (const auto level = (*design.standard)[f])
+        standard[design.factors[f].name] = design.factors[f].levels.at(static_cast<std::size_t>(*level));
     json["standard"] = standard;
   }
+  if (Json surfaces = surfaces_json(design); !surfaces.empty()) json["surfaces"] = std::move(surfaces);
   if (design.procedure)
     json["procedure"] = {{"kind", procedure_word(design.procedure->kind)},
                          {"factor", design.factors[design.procedure->factor].name},

@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// The design: factors with levels, standard, procedure.
+/// The design: factors with levels, standard, surfaces, procedure.
 Json design_json(const Design& design);
 
 /// Analysed participants by group of the between-subject factors; empty without such a factor.

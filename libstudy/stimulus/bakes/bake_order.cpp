@@ -56,6 +56,7 @@ sim::BakedView view_of(const BakeOrder& order, const sim::Scene& scene, bool fol
   view.height_px = order.size.height;
   view.camera_angle_deg = framing.camera_deg;
   view.visual_angle_deg = framing.visual_deg;
+  view.surface = order.fluid.surface;
   if (!follows_gaze) return view;
   const bool keys = order.scene_gaze && !scene.gaze.empty();
   view.gaze = keys ? "scene" : "middle";
@@ -82,6 +83,18 @@ std::string picture_words(const sim::BakeHeader& header) {
   std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   const std::string words = sim::picture_effects_in_words(effects);
   return words.empty() ? "no effects of the picture" : words;
+}
+
+/// Differences between the surfaces of the drawn pictures. A bake that records none was drawn as ellipsoids,
+/// or as spheres by a version before ellipsoids; it will do where no surface is wanted.
+void add_surface(Departures& out, const sim::BakedView& found, const sim::BakedView& wanted) {
+  if (!found.drawn() || !wanted.drawn()) return;
+  const auto words = [](const std::string& surface, const char* none) {
+    return surface.empty() ? none : surface;
+  };
+  if (wanted.surface.empty() && found.surface != "spheres") return;
+  out.add("pictures of", words(found.surface, "a surface that is not recorded"),
+          words(wanted.surface, "ellipsoids"));
 }
 
 std::string overlay_words(const sim::BakeHeader& header) {
@@ -154,6 +167,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
     else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
       out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
+  add_surface(out, found.view, wanted.view);
   // The bake's file stores a rounded content step.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
     out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),

@@ -12,8 +12,8 @@
 
 namespace study {
 
-/// What one bake is to contain. `fluid` gives scene, method, n_*, effects, back end, content step, frame
-/// rate, PTPE model and the visual angle of the picture. Leave its Viewing::gaze empty.
+/// What one bake is to contain. `fluid` gives scene, method, n_*, effects, surface, back end, content step,
+/// frame rate, PTPE model and the visual angle of the picture. Leave its Viewing::gaze empty.
 struct BakeOrder {
   StimulusChoice fluid;
   std::int64_t frames = 600;          ///< content steps, including the state at the start
@@ -33,7 +33,8 @@ sim::BakeHeader header_of(const BakeOrder& order);
 /// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,
 /// method, n_*, effects, content step and too few frames. Compares foam, tau and gaze only if the wanted bake
 /// uses them. Compares painted temperatures if `found` has pictures; otherwise `found` must store
-/// temperatures if `wanted` paints them. Compares effects, foam and temperatures only for the same scene, tau
+/// temperatures if `wanted` paints them. Compares the surfaces of pictures, stored or followed. Compares
+/// effects, foam and temperatures only for the same scene, tau
 /// and gaze only for the same method. Empty: no differences.
 std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 

@@ -28,12 +28,13 @@ std::string why_live(const Protocol& protocol, const PlannedStimulus& one) {
   return "";
 }
 
-/// Name such as "single_dam_32k_HiRes.bake". Also contains the level of effects, and the frame rate for tau,
-/// if the stimulus has them.
+/// Name such as "single_dam_32k_HiRes.bake". Also contains the level of effects, the surface, and the frame
+/// rate for tau, if the stimulus has them.
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
-  if (!one.what.effects.empty()) out += "_" + one.what.effects;
+  for (const std::string* level : {&one.what.effects, &one.what.surface})
+    if (!level->empty()) out += "_" + *level;
   if (one.rate) out += fmt::format("_{:.6g}_{:.6g}", one.rate->mean, one.rate->sd);
   return out + ".bake";
 }
@@ -91,6 +92,7 @@ BakeOrder order_of(const Protocol& protocol, const PlannedStimulus& one, const S
   order.fluid.effects = effects.water;
   order.fluid.picture_effects = effects.picture;
   order.fluid.paint_temperature = protocol.design.paint_temperature;
+  order.fluid.surface = one.what.surface;
   order.fluid.content_step_s = protocol.content.content_step_s;
   if (one.rate) order.fluid.fixed_rate = sim::FrameRate{one.rate->mean, one.rate->sd};
   order.frames = one.frames;

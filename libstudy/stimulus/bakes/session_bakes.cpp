@@ -24,7 +24,7 @@ std::shared_ptr<const FoundBake> open_bake(const fs::path& path) {
 
 std::string short_words(const StimulusSpec& what) {
   return fs::path(what.scene).stem().string() + " " + what.n_star + " " + what.method +
-         (what.effects.empty() ? "" : " " + what.effects);
+         (what.effects.empty() ? "" : " " + what.effects) + (what.surface.empty() ? "" : " " + what.surface);
 }
 
 bool shows(const PlannedStimulus& planned, const Cell& cell) {
@@ -45,11 +45,12 @@ BakeOrder order_for(const Protocol& protocol, const PlannedStimulus& one, const 
 void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path& bake) {
   for (const PlannedStimulus& one : plan) {
     if (one.what == plan.front().what) continue;
-    throw base::Error("--stimulus " + bake.string(),
-                      "shows one scene, method, n_* and set of effects, but the protocol names several",
-                      "bake them all: vip-study bake --protocol FILE --out FOLDER, then vip-study run "
-                      "--stimulus FOLDER; or "
-                      "run the protocol live, without --stimulus");
+    throw base::Error(
+        "--stimulus " + bake.string(),
+        "shows one scene, method, n_*, set of effects and surface, but the protocol names several",
+        "bake them all: vip-study bake --protocol FILE --out FOLDER, then vip-study run "
+        "--stimulus FOLDER; or "
+        "run the protocol live, without --stimulus");
   }
 }
 

@@ -26,9 +26,9 @@ class SessionBakes {
  public:
   SessionBakes() = default;
   /// `path`: argument of `vip-study run --stimulus`; empty: no bake. base::Error for a single file if the
-  /// protocol has several scenes, methods, n_* or levels of effects, and for a folder without any bake of the
-  /// protocol. base::Error also for a bake in a folder whose fluid differs from the session's, or whose
-  /// method chose the particles' levels by the gaze in a picture of another size or angle.
+  /// protocol has several scenes, methods, n_*, levels of effects or surfaces, and for a folder without any
+  /// bake of the protocol. base::Error also for a bake in a folder whose fluid differs from the session's, or
+  /// whose method chose the particles' levels by the gaze in a picture of another size or angle.
   SessionBakes(const std::filesystem::path& path, const Protocol& protocol, const SessionLook& look);
 
   /// The bake of a cell; null if the cell runs live.

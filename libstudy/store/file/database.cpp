@@ -110,7 +110,7 @@ std::unique_ptr<Connection> snapshot(const fs::path& path) {
 constexpr std::array step_files{
     "001_initial.sql",      "002_blocks.sql",   "003_permissions.sql", "004_counting.sql", "005_headsets.sql",
     "006_effects.sql",      "007_promises.sql", "008_factors.sql",     "009_imports.sql",  "010_markers.sql",
-    "011_eye_trackers.sql", "012_light.sql",    "013_slots.sql"};
+    "011_eye_trackers.sql", "012_light.sql",    "013_slots.sql",       "014_surface.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 
 std::string read_sql(const std::string& name) {

@@ -16,6 +16,7 @@ std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
                     {"mean_ms", one.mean_ms},
                     {"p95_ms", one.p95_ms}});
     if (!one.what.effects.empty()) json.back()["effects"] = one.what.effects;
+    if (!one.what.surface.empty()) json.back()["surface"] = one.what.surface;
   }
   return json.dump();
 }
@@ -30,7 +31,8 @@ std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::st
     const auto json = base::parse_json(text);
     if (!json.is_array()) throw unreadable();
     for (const auto& one : json) {
-      out.push_back({{one.at("scene"), one.at("method"), one.at("n_star"), one.value("effects", "")},
+      out.push_back({{one.at("scene"), one.at("method"), one.at("n_star"), one.value("effects", ""),
+                      one.value("surface", "")},
                      one.at("mean_ms"),
                      one.at("p95_ms")});
       if (!(out.back().mean_ms >= 0) || !(out.back().p95_ms >= 0)) throw unreadable();

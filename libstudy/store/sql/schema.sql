@@ -344,7 +344,7 @@ CREATE TABLE "cell" (
   sd_fps REAL NOT NULL CHECK (sd_fps >= 0), -- wished standard deviation of the frame rate, frames/s
   duration_s REAL NOT NULL CHECK (duration_s > 0), -- wished length, s
   effects TEXT, -- level of the factor effects: none, scene or a name in the protocol; empty: the design does not vary them, and the scene has its own
-  effect_set TEXT, levels TEXT /* levels of the protocol's own factors, as "factor = level", one on a line; empty: a protocol of format 2 */, timing TEXT /* timing profile in words; mean_fps and sd_fps are those of its intervals; empty: mean_fps and sd_fps alone */, -- what that level holds, as the protocol says it, SI units; empty: likewise
+  effect_set TEXT, levels TEXT /* levels of the protocol's own factors, as "factor = level", one on a line; empty: a protocol of format 2 */, timing TEXT /* timing profile in words; mean_fps and sd_fps are those of its intervals; empty: mean_fps and sd_fps alone */, surface TEXT /* how its particles are drawn: ellipsoids or spheres; empty: the protocol names no surface */, -- what that level holds, as the protocol says it, SI units; empty: likewise
   CHECK ((effects IS NULL) = (effect_set IS NULL)),
   PRIMARY KEY (protocol_id, cell)
 ) STRICT, WITHOUT ROWID;

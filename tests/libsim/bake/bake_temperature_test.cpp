@@ -127,6 +127,34 @@ TEST(BakeTemperature, HeaderComesBackAsWritten) {
   EXPECT_EQ(sim::format_bake_header(bake.header()), sim::format_bake_header(header));
 }
 
+TEST(BakeSurface, OnlyABakeThatRecordsItIsOfFormat6) {
+  const Folder folder;
+  auto header = bake_test::header(1, 8, 4);
+  EXPECT_EQ(sim::format_of(header), 4u);
+  header.view.surface = "spheres";
+  ASSERT_EQ(sim::format_of(header), 6u);
+  sim::BakeWriter writer(folder / "a.bake", header, true);
+  writer.add_frame(0, bake_test::particles(0), bake_test::account(0));
+  writer.add_picture(bake_test::picture(0, 8, 4));
+  writer.finish();
+  EXPECT_EQ(bake_test::read_all(folder / "a.bake")[8], 6);
+  const sim::BakeReader bake(folder / "a.bake");
+  EXPECT_EQ(bake.header().view.surface, "spheres");
+  EXPECT_FALSE(bake.header().reference_k);
+  EXPECT_EQ(sim::PictureReader(bake).read(0).rgba, bake_test::picture(0, 8, 4));
+}
+
+TEST(BakeSurface, AnUnknownWordAndABakeWithoutAPictureAreRefused) {
+  const Folder folder;
+  auto header = bake_test::header(1);
+  const auto refusal = [&] { return error_of([&] { sim::BakeWriter(folder / "a.bake", header, true); }); };
+  header.view.surface = "balls";
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("surface is \"balls\""), HasSubstr("ellipsoids or spheres")));
+  header.view = {};
+  header.view.surface = "spheres";
+  EXPECT_THAT(refusal(), HasSubstr("in a bake for which a picture was drawn"));
+}
+
 TEST(BakeTemperature, WhatCannotBeKeptIsRefused) {
   const Folder folder;
   sim::BakeWriter writer(folder / "a.bake", warm_header(9), true);
