@@ -8,6 +8,7 @@
 #include "libstudy/report/page.hpp"
 #include "libstudy/report/sections.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study::report {
 
@@ -76,6 +77,17 @@ std::string people_section(const Field& root) {
                  table.html() + (out.empty() ? paragraph("Nothing was excluded.") : out.html()));
 }
 
+/// How the particles were drawn; "" if the protocol names no surface.
+std::string surfaces_text(const Field& surfaces) {
+  std::vector<std::string> all;
+  for (const auto& [surface, level] : surfaces.members()) {
+    const std::string cells = level.words().empty() ? "some cells" : "cells with " + words(level);
+    all.push_back("as " + svg::escaped(surface) + " in " +
+                  (level.words() == "every stimulus" ? level.words() : cells));
+  }
+  return all.empty() ? "" : paragraph("The particles were drawn " + base::enumerated(all) + ".");
+}
+
 std::string design_section(const Field& root) {
   const Field design = root["design"];
   Table table("Factors", {"Factor", "Varies", "Levels"});
@@ -91,18 +103,14 @@ std::string design_section(const Field& root) {
     std::string standard;
     for (const auto& [factor, level] : design["standard"].members())
       standard += (standard.empty() ? "" : ", ") + svg::escaped(factor) + " " + words(level);
-    std::string same;
+    std::vector<std::string> same;
     for (const Field& factor : design["factors"].entries())
       if (factor["vary"].words() != "between" && !design["standard"][factor["name"].words()].exists())
-        same += (same.empty() ? "" : ", ") + words(factor["name"]);
+        same.push_back(words(factor["name"]));
     more += paragraph("Each trial shows a pair: a comparison and the standard, " + standard +
-                      (same.empty() ? "" : ", both with the same level of " + same) + ".");
+                      (same.empty() ? "" : ", both with the same level of " + base::enumerated(same)) + ".");
   }
-  std::string surfaces;
-  for (const auto& [surface, level] : design["surfaces"].members())
-    surfaces += (surfaces.empty() ? "" : "; ") + svg::escaped(surface) +
-                (level.words().empty() ? "" : " (" + words(level) + ")");
-  if (!surfaces.empty()) more += paragraph("The particles were drawn as " + surfaces + ".");
+  more += surfaces_text(design["surfaces"]);
   if (design["procedure"].exists())
     more += paragraph("The procedure " + words(design["procedure"]["kind"]) + " chose the level of " +
                       words(design["procedure"]["factor"]) + " in each trial, " +

@@ -23,9 +23,11 @@ class SurfaceStudyE2e : public ShownStudy {
  protected:
   SurfaceStudyE2e() : ShownStudy("surface", "64x36") {
     std::string text = shipped_text("surface");
-    for (const auto& [from, to] : std::map<std::string, std::string>{{"n_star = \"32k\"", "n_star = \"64\""},
-                                                                     {"duration_s = 8", "duration_s = 0.2"},
-                                                                     {"repetitions = 4", "repetitions = 1"}})
+    for (const auto& [from, to] :
+         std::map<std::string, std::string>{{"n_star = \"32k\"", "n_star = \"64\""},
+                                            {"duration_s = 8", "duration_s = 0.2"},
+                                            {"repetitions = 4", "repetitions = 1"},
+                                            {"break_every = 12\nbreak_s = 20\n", ""}})
       text = replaced(text, from, to);
     base::write_file_atomically(protocol_, text);
   }
@@ -93,13 +95,18 @@ TEST_F(SurfaceStudyE2e, GoesFromTheBundleToTheReport) {
       run_program({vip_stats, "preregister", protocol_, "--plan", plan, "--out", folder_ / "bundle"});
   ASSERT_EQ(frozen.exit_code, 0) << frozen.err;
   EXPECT_THAT(base::read_file(folder_ / "bundle" / "PREREGISTRATION.txt", 1 << 20),
-              AllOf(HasSubstr("hires: real, surface ellipsoids, method HiRes"), HasSubstr("methods: real, "),
-                    Not(HasSubstr("FovFluid"))));
+              AllOf(HasSubstr("hires: real, method HiRes, surface ellipsoids against 0.5"),
+                    HasSubstr("methods: real, "), Not(HasSubstr("FovFluid"))));
 
-  const Ended ran = run({"--participants", "4", "--seed", "3"});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_THAT(ran.err, Not(HasSubstr("test data")));
+  const Ended shown = run({"--participant", "P01", "--seed", "3"});
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.err, Not(HasSubstr("test data")));
   EXPECT_THAT(stimulus(), HasSubstr("drawn as ellipsoids, spheres"));
+  EXPECT_EQ(count_in(database_, "SELECT count(*) FROM cell WHERE surface = 'spheres'"), 6);
+  const Ended ran =
+      run_program({vip_study, "run", protocol_, "--db", database_, "--observer", "random", "--seed", "3",
+                   "--participant", "P02", "--participant", "P03", "--participant", "P04"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
 
   const Ended told = run_program({vip_stats, "study", database_, "--preregistered", folder_ / "bundle",
                                   "--json", folder_ / "study.json", "--html", folder_ / "study.html"});
@@ -113,16 +120,16 @@ TEST_F(SurfaceStudyE2e, GoesFromTheBundleToTheReport) {
     EXPECT_EQ(one.at("status"), "preregistered");
     EXPECT_TRUE(one.at("p_adjusted").is_number()) << one.dump();
   }
-  EXPECT_EQ(study.at("hypotheses")[0].at("a"), "surface ellipsoids, method HiRes");
+  EXPECT_EQ(study.at("hypotheses")[0].at("a"), "method HiRes, surface ellipsoids");
   ASSERT_EQ(study.at("descriptives").size(), 1u);
   EXPECT_EQ(study.at("descriptives")[0].at("cells").size(), 6u) << "one for each pair";
   const std::string page =
       std::regex_replace(base::read_file(folder_ / "study.html", 1 << 24), std::regex("<[^>]*>"), "");
-  EXPECT_THAT(page,
-              AllOf(HasSubstr("the standard, surface spheres, both with the same level of method, scene."),
-                    HasSubstr("The particles were drawn as ellipsoids (surface ellipsoids); spheres (surface "
-                              "spheres)."),
-                    Not(HasSubstr("H1"))));
+  EXPECT_THAT(
+      page, AllOf(HasSubstr("the standard, surface spheres, both with the same level of method and scene."),
+                  HasSubstr("The particles were drawn as ellipsoids in cells with surface ellipsoids and as "
+                            "spheres in cells with surface spheres."),
+                  Not(HasSubstr("H1"))));
 
   const Ended reported = run_program(
       {vip_stats, "report", database_, "--html", folder_ / "r.html", "--json", folder_ / "r.json"});

@@ -65,13 +65,14 @@ TEST_F(SurfaceE2e, HoldsEveryFigureOfBothSurfaces) {
 }
 
 TEST_F(SurfaceE2e, OneSurfaceHasOneColumn) {
-  const auto ended = table("surface --surface spheres --n-star 64 --frames 0 --csv " + path("s.csv"));
+  const auto ended =
+      program("vip-bench surface --surface spheres --n-star 64 --frames 0 --csv " + path("s.csv"));
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   const auto table = rows("s.csv");
   EXPECT_EQ(table.size(), 50u);
   EXPECT_FALSE(table.front().contains("ellipsoids"));
   EXPECT_EQ(this->table("surface --surface blobs").exit_code, 2) << "an unknown word";
-  const auto shapes = this->table("surface --frames 0 --backend cpu");
+  const auto shapes = this->table("surface --frames 0");  // adds --backend cpu
   EXPECT_EQ(shapes.exit_code, 2);
   EXPECT_THAT(shapes.out, ::testing::HasSubstr("--frames 0 excludes --backend"));
 }
