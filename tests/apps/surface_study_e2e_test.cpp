@@ -61,7 +61,7 @@ TEST_F(SurfaceStudyE2e, ABakeOfOneSurfaceIsNeverShownForTheOther) {
   EXPECT_THAT(refused.err,
               HasSubstr("HiRes_ellipsoids.bake: holds pictures of spheres instead of ellipsoids"));
   EXPECT_THAT(bake({"--keep", "pictures"}).out,
-              HasSubstr("holds pictures of spheres instead of ellipsoids; is made again"));
+              HasSubstr("HiRes_ellipsoids.bake: pictures of spheres instead of ellipsoids; is made again"));
 }
 
 TEST_F(SurfaceStudyE2e, ABakeOfASceneRecordsItsSurfaceWherePicturesAreDrawn) {
@@ -116,10 +116,7 @@ TEST_F(SurfaceStudyE2e, GoesFromTheBundleToTheReport) {
   EXPECT_EQ(study.at("design").at("surfaces"),
             (Json{{"ellipsoids", "surface ellipsoids"}, {"spheres", "surface spheres"}}));
   ASSERT_EQ(study.at("hypotheses").size(), 3u);
-  for (const auto& one : study.at("hypotheses")) {
-    EXPECT_EQ(one.at("status"), "preregistered");
-    EXPECT_TRUE(one.at("p_adjusted").is_number()) << one.dump();
-  }
+  for (const auto& one : study.at("hypotheses")) EXPECT_TRUE(one.at("p_adjusted").is_number()) << one.dump();
   EXPECT_EQ(study.at("hypotheses")[0].at("a"), "method HiRes, surface ellipsoids");
   ASSERT_EQ(study.at("descriptives").size(), 1u);
   EXPECT_EQ(study.at("descriptives")[0].at("cells").size(), 6u) << "one for each pair";

@@ -191,6 +191,10 @@ TEST(Scene, ErrorsNameThePlaceAndTheMend) {
        {"environment = \"space\"", "seed = -1", "seed = 0.5", "absorption_per_m = [1.0, 2.0]",
         "absorption_per_m = [1.0, 2.0, -3.0]", "shadow = 1", "lamp = 3"})
     EXPECT_THAT(error_of(text + "\n[light]\n" + light + "\n"), testing::HasSubstr("'light.")) << light;
+  for (const char* seed : {"1000001", "9007199254740993", "9223372036854775807"})
+    EXPECT_THAT(error_of(text + "\n[light]\nseed = " + seed + "\n"),
+                testing::HasSubstr("out of range\n  mend: use a value in [0, 1000000]"))
+        << seed;
   EXPECT_THAT(error_of(replaced(text, "7.2, 12.8", "nan, 12.8")), testing::HasSubstr("must be finite"));
 }
 
