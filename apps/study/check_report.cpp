@@ -213,9 +213,14 @@ void print_stimuli(const CheckReport& report) {
   if (report.protocol.design.paint_temperature)
     std::printf("overlay: temperature is painted over the water of every stimulus\n");
   std::printf("\nstimuli:\n");
-  for (const auto& one : study::plan_bakes(report.protocol)) {
-    const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";
-    std::printf("  %-28s ", (study::stimulus_name(one.what) + rate).c_str());
+  const auto plan = study::plan_bakes(report.protocol);
+  const auto name_of = [](const study::PlannedStimulus& one) {
+    return study::stimulus_name(one.what) + (one.rate ? " at " + study::setting_name(*one.rate) : "");
+  };
+  std::size_t width = 28;
+  for (const auto& one : plan) width = std::max(width, name_of(one).size());
+  for (const auto& one : plan) {
+    std::printf("  %-*s ", static_cast<int>(width), name_of(one).c_str());
     if (!one.live.empty()) {
       std::printf("live: %s\n", one.live.c_str());
     } else {

@@ -133,12 +133,14 @@ std::string stimulus_name(const StimulusSpec& what) {
 }
 
 std::string measured_table(const MeasuredReport& report) {
-  std::string out = fmt::format("{:<28} {:<15} {:>9} {:>8} {:>8} {:>8}\n", "stimulus", "asked", "frames/s",
-                                "sd", "p95 ms", "tau min");
+  std::size_t width = 28;
+  for (const MeasuredCell& one : report.cells) width = std::max(width, stimulus_name(one.what).size());
+  std::string out = fmt::format("{:<{}} {:<15} {:>9} {:>8} {:>8} {:>8}\n", "stimulus", width, "asked",
+                                "frames/s", "sd", "p95 ms", "tau min");
   for (const MeasuredCell& one : report.cells) {
     const std::string asked = one.setting.mean > 0 ? setting_name(one.setting) : "as it runs";
-    out += fmt::format("{:<28} {:<15} {:9.1f} {:8.2f} {:8.1f} {:8.2f}  ", stimulus_name(one.what), asked,
-                       one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
+    out += fmt::format("{:<{}} {:<15} {:9.1f} {:8.2f} {:8.1f} {:8.2f}  ", stimulus_name(one.what), width,
+                       asked, one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
            one.words + "\n";
   }
   return out;

@@ -98,6 +98,14 @@ TEST_F(SurfaceStudyE2e, GoesFromTheBundleToTheReport) {
               AllOf(HasSubstr("hires: real, method HiRes, surface ellipsoids against 0.5"),
                     HasSubstr("methods: real, "), Not(HasSubstr("FovFluid"))));
 
+  // Without its own plan, the bundle holds none of the paper's hypotheses.
+  const Ended usual = run_program({vip_stats, "preregister", protocol_, "--out", folder_ / "usual"});
+  ASSERT_EQ(usual.exit_code, 0) << usual.err;
+  EXPECT_THAT(
+      base::read_file(folder_ / "usual" / "PREREGISTRATION.txt", 1 << 20),
+      HasSubstr("Hypotheses\nNone.\n- Not tested: H1 to H6 of surface: the surface is a factor, and H1 "
+                "to H6 are about methods alone"));
+
   const Ended shown = run({"--participant", "P01", "--seed", "3"});
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_THAT(shown.err, Not(HasSubstr("test data")));
