@@ -132,7 +132,8 @@ TEST(EffectLevels, StandInTheDatabaseAndItsTables) {
   EXPECT_EQ(study.protocols[0].treatments[3].effects, "foam");
   EXPECT_FALSE(study.protocols[0].pilot());
   export_csv(path, folder / "out");
-  EXPECT_THAT(test::bytes_of(folder / "out/cells.csv"), HasSubstr(",HiRes,16k,30,0,8,foam,keeps foam,,,\r\n"));
+  EXPECT_THAT(test::bytes_of(folder / "out/cells.csv"),
+              HasSubstr(",HiRes,16k,30,0,8,foam,keeps foam,,,\r\n"));
   EXPECT_THAT(test::bytes_of(folder / "out/dictionary.csv"), HasSubstr("\ncells.csv,effects,TEXT,"));
   EXPECT_THAT(test::bytes_of(folder / "out/dictionary.csv"), HasSubstr("\nratings.csv,second_effects,TEXT,"));
 }
