@@ -18,7 +18,7 @@ const float torn_cells = 12.0;  // floor cells; rays that land farther apart ent
 
 struct Landing {
   vec2 at;     // where the ray meets the floor, in floor cells
-  float kept;  // share of the ray's light that the surface does not reflect
+  float kept;  // share of the ray's light that no obstacle blocks and the surface does not reflect
 };
 
 vec4 surface_at(ivec2 cell) {
@@ -35,6 +35,17 @@ float rise(vec4 middle, vec4 before, vec4 after) {
   const float sum = (has_after ? after.x - middle.x : 0.0) + (has_before ? middle.x - before.x : 0.0);
   return sum / (maps.surface_grid.z * max(float(has_before) + float(has_after), 1.0));
 }
+
+#ifdef OBSTACLES
+// True if an obstacle blocks the sunlight on its way to the surface, which has the height height_m there.
+bool is_kept_off(vec2 straight, float height_m) {
+  const vec2 under = straight + leans * height_m;
+  const vec3 low = vec3(under.x, height_m, under.y);
+  const float far_m = maps.tank.x + maps.tank.y + maps.tank.z;
+  const vec3 up = normalize(sun);
+  return meet_obstacles(low + far_m * up, -up).at < far_m;
+}
+#endif
 
 Landing landing_of(ivec2 cell) {
   const vec2 straight = place_of(cell);
@@ -54,6 +65,9 @@ Landing landing_of(ivec2 cell) {
     at = mix(straight, bent, pool);
     kept = 1.0 - pool * reflected_share(dot(n, sun));
   }
+#ifdef OBSTACLES
+  if (is_kept_off(straight, middle.x)) kept = 0.0;
+#endif
   return Landing(at / maps.floor_grid.x, kept);
 }
 
@@ -74,24 +88,9 @@ void lay(vec2 middle, vec2 size, float units) {
   }
 }
 
-#ifdef OBSTACLES
-// True if an obstacle blocks the sunlight of this cell before the light enters the water.
-bool is_kept_off(ivec2 cell) {
-  const vec2 place = place_of(cell) + 0.5 * maps.surface_grid.z;
-  const vec2 under = place + leans * surface_at(cell).x;
-  const vec3 low = vec3(under.x, surface_at(cell).x, under.y);
-  const float far_m = maps.tank.x + maps.tank.y + maps.tank.z;
-  const vec3 up = normalize(sun);
-  return meet_obstacles(low + far_m * up, -up).at < far_m;
-}
-#endif
-
 void main() {
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, maps.cells.xy - 1))) return;
-#ifdef OBSTACLES
-  if (is_kept_off(cell)) return;
-#endif
   Landing corners[4];
   for (int k = 0; k < 4; ++k) corners[k] = landing_of(cell + ivec2(k & 1, k >> 1));
   vec2 sides = max(max(abs(corners[1].at - corners[0].at), abs(corners[3].at - corners[2].at)),

@@ -19,6 +19,7 @@ layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
+const float most_steep = 3.0;  // smallest jump between layers of water that are seen at a slant, 2 particle radii
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.03;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
@@ -41,6 +42,7 @@ float water_length(vec2 xy) {
 vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
   const vec3 from = (world_to_eye * vec4(position, 1.0)).xyz, along = mat3(world_to_eye) * mirrored;
   float way = first_step_r * radius, before = 0.0;
+  bool in_air = false;
   for (int k = 0; k < most_steps; ++k, before = way, way *= step_growth) {
     vec3 at = from + way * along;
     if (-at.z < origin.z) return vec2(0.0);
@@ -48,7 +50,8 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
     if (any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) return vec2(0.0);
     float there = nearness[int(xy.y) * size.x + int(xy.x)];
     float behind = -at.z - (there > 0.0 ? 1.0 / there : 1e9);
-    if (behind < 0.0 || behind > way - before + 2.0 * radius) continue;
+    if (behind < 0.0) in_air = true;
+    if (!in_air || behind < 0.0 || behind > way - before + 2.0 * radius) continue;
     const vec2 to_border = min(xy, vec2(size.xy) - xy) / vec2(size.xy);
     const float inside = smoothstep(0.0, 0.1, min(to_border.x, to_border.y));
     return vec2(inside * (1.0 - smoothstep(0.7, 1.0, float(k) / float(most_steps))), water_length(xy));
@@ -56,20 +59,23 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
   return vec2(0.0);
 }
 
-// Light that the surface mirrors towards the eye. A ray that is mirrored downwards meets water again: its light is
-// that of the direction mirrored once more, less what the water takes. Upright water, such as that at the near
-// glass, mirrors it to the ground.
-vec3 mirrored_light(vec3 position, vec3 mirrored, bool upright, float share, float radius, float width_per_m) {
+// Light that the surface with the normal n mirrors towards the eye along d. A ray that is mirrored downwards meets water
+// again: its light is that of the direction mirrored once more, less what the water takes. Two kinds of rays
+// do not: upright water at the near glass mirrors the ground, and a ray that hardly turns passes the water's rim.
+vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float share, float radius, float width_per_m) {
+  vec3 mirrored = reflect(d, n);
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
   if (met.at < never) return obstacle_light(met);
 #endif
-  const bool again = mirrored.y < 0.0 && !upright;
+  const bool upright = at_glass && abs(n.y) < 0.1, turns = dot(d, n) < -0.15;
+  if (mirrored.y < 0.0 && !upright && !turns) mirrored = d;
+  const bool again = mirrored.y < 0.0 && !upright && turns;
   const float kept = again ? 0.5 : 1.0;
-  const vec3 up = upright ? mirrored : normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
+  const vec3 up = upright || !turns ? mirrored : normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
   vec3 light = surroundings(position, up, width_per_m, 0.0);
   light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
-  if (share > least_share) {
+  if (share > least_share && turns) {
     vec2 ahead = water_ahead(position, mirrored, radius);
     ahead.x *= smoothstep(least_share, 2.0 * least_share, share);
     light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
@@ -118,19 +124,29 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
   return behind;
 }
 
-// The normal of a pixel for shading, in eye space. Three normals are replaced: beside a jump of depth, where the
-// difference of neighbours says little, by the mean of the neighbours on the same layer; at the picture's border, to
-// which the depth filter reaches from one side only, by that of a pixel further inside; and one that faces away from
-// the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to the next.
+// Mean of two steps of nearness, of those that count.
+float mean_step(vec2 steps, vec2 counts) { return dot(steps, counts) / max(counts.x + counts.y, 1.0); }
+
+// The normal of a pixel for shading, in eye space: that of the mean steps of nearness to the neighbours. Beside a jump of
+// depth it is the mean normal of the neighbours on the same layer, unless the mean steps are steeper: on water that is
+// seen at a slant, each particle is a ledge whose own normal faces the eye too much. Two normals are replaced: at the
+// picture's border, to which the depth filter reaches from one side only, by that of a pixel further inside; and one
+// that faces away from the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to the
+// next.
 vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
   const ivec2 low = max(pixel - 1, ivec2(0)), high = min(pixel + 1, size.xy - 1);
   const int row = pixel.y * size.x;
   const vec4 beside = vec4(nearness[row + low.x], nearness[row + high.x], nearness[low.y * size.x + pixel.x],
                            nearness[high.y * size.x + pixel.x]);
+  const vec4 steps = vec4(centre - beside.x, beside.y - centre, centre - beside.z, beside.w - centre);
+  const vec4 counts = vec4(lessThan(abs(steps), vec4(most_steep * reach)));
+  const vec2 by_slope = vec2(mean_step(steps.xy, counts.xy), mean_step(steps.zw, counts.zw)) / rays.xz;
+  const vec3 slanted = normalize(vec3(-by_slope, centre - dot(by_slope, ray.xy)));
   vec3 n = normals[at].xyz;
-  if (all(lessThan(abs(beside - centre), vec4(reach)))) {
+  if (all(lessThan(abs(steps), vec4(reach)))) {
     bend = min(0.7 * length(normals[high.y * size.x + high.x].xyz - n), most_bend);
+    n = slanted;
   } else {
     bend = most_bend;
     for (int k = 0; k < 9; ++k) {
@@ -139,6 +155,7 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
       if (nearness[there] > 0.0 && abs(nearness[there] - centre) < reach) n += normals[there].xyz;
     }
     n = normalize(n);
+    if (dot(slanted, ray) > dot(n, ray)) n = slanted;
   }
   const ivec2 border = ivec2(clamp(0.5 * radius * centre / rays.x, 1.0, 24.0));
   const ivec2 inner = clamp(pixel, min(border, size.xy / 2), max(size.xy - 1 - border, size.xy / 2));
@@ -222,7 +239,8 @@ void main() {
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
-    mirrored = mirrored_light(position, reflect(d, n), abs(n.y) < 0.1, share, radius, footprint_per_m + 2.0 * bend);
+    const bool at_glass = distance_m - crossing.enter < radius;
+    mirrored = mirrored_light(position, d, n, at_glass, share, radius, footprint_per_m + 2.0 * bend);
     const Behind wet = refracted(position, d, n, bend, length_m, radius, footprint_per_m, distance_m);
     if (opacity == 1.0) behind = wet;
     behind.kept = mix(vec3(1.0), wet.kept, opacity);
