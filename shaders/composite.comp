@@ -19,9 +19,10 @@ layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
+const float back_spread = 0.15;  // angle by which the unknown back of water away from the walls spreads light, rad
 const float most_steep = 3.0;  // smallest jump between layers of water that are seen at a slant, 2 particle radii
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
-const float thin_m = 0.03;                          // thickness below which water reflects less, m
+const float thin_m = 0.01;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
 const int most_steps = 8;        // of such a ray
 const float first_step_r = 3.0, step_growth = 1.6;
@@ -91,18 +92,20 @@ struct Behind {
 };
 
 // The way of the eye's ray d through the water. `bend`: how far the normal n turns within the pixel; the footprint
-// widens by the angle by which refraction then spreads the rays.
-Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float radius, float footprint_per_m,
-                 float distance_m) {
+// widens by the angle by which refraction then spreads the rays. `length_m`: of the water along d; `wall_m`: way along d
+// to the tank's wall or an obstacle.
+Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float wall_m, float radius,
+                 float footprint_per_m, float distance_m) {
   const vec3 inside = refract(d, n, into_water);
   const Crossing crossing = cross_tank(position, inside);
   float room = max(crossing.leave, 0.0);
 #if defined(OBSTACLES) && !defined(ONLY_PIPES)
   room = min(room, meet_obstacles(position, inside).at);
 #endif
-  const float way = min(length_m, room);
+  // Water that fills the way to the wall is a pool. Its length is a sum of chords, which is not exact.
+  const float to_wall = clamp((1.1 * length_m + 1.5 * radius) / max(wall_m, 1e-3), 0.0, 1.0);
+  const float way = mix(min(length_m, room), room, smoothstep(0.85, 1.0, to_wall));
   // Light leaves a pool through the tank's side or floor along `inside`, a sheet along d, and a drop turned once more.
-  const float to_wall = clamp(length_m / max(room, 1e-3), 0.0, 1.0);
   const float as_drop = (1.0 - smoothstep(1.0, 2.5, 0.5 * length_m / radius)) * (1.0 - to_wall);
   Behind behind;
   behind.from = position + (way - 1e-3) * inside;
@@ -116,9 +119,10 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
     behind.along[wall] = -inside[wall];
     through += min(behind.from.y / max(-inside.y, 0.05), way);
   }
-  behind.footprint_per_m = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop);
-  behind.travelled = footprint_per_m / behind.footprint_per_m * distance_m + way;
   behind.framed = smoothstep(0.5, 0.9, to_wall);
+  behind.footprint_per_m = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop) +
+                           back_spread * (1.0 - behind.framed);
+  behind.travelled = footprint_per_m / behind.footprint_per_m * distance_m + way;
   behind.kept = exp(-absorption.rgb * through);
   behind.added = in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
   return behind;
@@ -241,7 +245,12 @@ void main() {
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
     const bool at_glass = distance_m - crossing.enter < radius;
     mirrored = mirrored_light(position, d, n, at_glass, share, radius, footprint_per_m + 2.0 * bend);
-    const Behind wet = refracted(position, d, n, bend, length_m, radius, footprint_per_m, distance_m);
+    float wall_at = crossing.leave;
+#ifdef OBSTACLES
+    wall_at = min(wall_at, obstacle_at);
+#endif
+    const Behind wet =
+        refracted(position, d, n, bend, length_m, wall_at - distance_m, radius, footprint_per_m, distance_m);
     if (opacity == 1.0) behind = wet;
     behind.kept = mix(vec3(1.0), wet.kept, opacity);
     behind.added = opacity * wet.added;

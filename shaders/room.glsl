@@ -65,7 +65,7 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
 }
 
 // Light that arrives along the ray d at point o, without the tank's frame on the side towards o. `framed`: opacity of
-// the frame on the far side, 0 to 1; `travelled`: way of the ray before o, m.
+// frame and level marks on the far side, 0 to 1; `travelled`: way of the ray before o, m.
 vec3 seen(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);
@@ -87,7 +87,7 @@ vec3 seen(vec3 o, vec3 d, float footprint_per_m, float travelled, float framed) 
   const vec3 beyond = surroundings(p, d, footprint_per_m, travelled + way);
   const bool above = c.leave_axis == 1;
   if (!through || (above && absorption.w == 0.0)) return mix(beyond, frame_colour, frame);
-  const float mark = above ? 0.0 : strips(p.y, 0.012, 1.0, width) * 0.35;
+  const float mark = above ? 0.0 : framed * strips(p.y, 0.012, 1.0, width) * 0.35;
   const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
   return mix(glass, frame_colour, frame);
 }

@@ -150,6 +150,8 @@ const ViewTargets& FluidRenderer::State::drawn(std::size_t view) const {
 
 void FluidRenderer::State::write_block(ViewTargets& t) const {
   const auto step = static_cast<float>(options.thickness_step);
+  // A drawn sphere or ellipsoid holds the volume of a sphere of radius_scale particle radii.
+  const float filled = options.packing * options.radius_scale * options.radius_scale * options.radius_scale;
   const ViewBlock block{t.view.view,
                         rigid_inverse(t.view.view),
                         pack(pixel_rays(t.view)),
@@ -158,7 +160,7 @@ void FluidRenderer::State::write_block(ViewTargets& t) const {
                          static_cast<float>(t.view.near_m), options.radius_scale},
                         {options.filter_sigma_r, options.filter_delta_r, options.filter_mu_r,
                          static_cast<float>(options.filter_max_px)},
-                        {1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, step,
+                        {1 / options.thickness_unit_m, options.thickness_unit_m / filled, step,
                          static_cast<float>(options.filter_max_taps)},
                         absorption,
                         tank};
