@@ -6,7 +6,7 @@ layout(std140, binding = 1) uniform FloorMaps {
   vec4 surface_grid;  // xy: low corner x, z, m; z: edge of a cell, m; w: splatted radius / particle radius
   vec4 floor_grid;    // x: edge of a cell, m; y: units per m of chord; z: m of water per unit; w: standard
                       // deviation of the surface's smoothing, particle radii
-  vec4 strength;      // of the picture effects, 0 to 1: x shadows, y caustics; z: least mipmap level that is shown
+  vec4 strength;      // of the picture effects, 0 to 1: x shadows, y caustics
   vec4 absorption;    // by water of red, green and blue, 1/m
 } maps;
 

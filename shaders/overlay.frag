@@ -25,14 +25,26 @@ vec3 class_colour(float value) {
   return stops[clamp(int(value + 0.5), 0, 3)];
 }
 
-void main() {
-  const ivec2 pixel = ivec2(gl_FragCoord.xy - origin.xy);
+// Paint of the pixel, and its opacity: 0 where no painted particle is in front. NaN is painted magenta.
+vec4 paint_at(ivec2 pixel) {
   const int at = pixel.y * size.x + pixel.x;
   const uint particle = front[at];
-  if (particle >= value_count) discard;
+  if (particle >= value_count) return vec4(0.0);
   const float value = values[particle];
   const float facing = 0.55 + 0.45 * abs(normals[at].z);
   const vec3 paint = classes ? class_colour(value) : scale_colour((value - range.x) / (range.y - range.x));
-  // NaN is painted magenta.
-  colour = vec4(value == value ? facing * paint : vec3(1.0, 0.0, 1.0), 0.8);
+  return vec4(value == value ? facing * paint : vec3(1.0, 0.0, 1.0), 0.8);
+}
+
+// Outlines are smooth: a pixel takes the mean of its neighbours' paint with the weights 1, 2, 1 along each axis.
+void main() {
+  const ivec2 pixel = ivec2(gl_FragCoord.xy - origin.xy);
+  vec4 sum = vec4(0.0);
+  for (int k = 0; k < 9; ++k) {
+    const ivec2 aside = ivec2(k % 3, k / 3) - 1;
+    const vec4 paint = paint_at(clamp(pixel + aside, ivec2(0), size.xy - 1));
+    sum += float((2 - abs(aside.x)) * (2 - abs(aside.y))) * vec4(paint.rgb * paint.a, paint.a);
+  }
+  if (sum.a == 0.0) discard;
+  colour = vec4(sum.rgb / sum.a, sum.a / 16.0);
 }

@@ -23,8 +23,7 @@ constexpr float smoothing_r =
 constexpr int surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
 
 // Where only [light] asks for a shadow, the maps are coarser and the shadow softer.
-constexpr int soft_cells = 256;
-constexpr float soft_level = 1;
+constexpr int soft_cells = 128;
 constexpr float soft_strength = 0.7F;
 
 bool lists_light(const Scene& scene) {
@@ -70,7 +69,7 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
             {low, low, surface_edge, options.radius_scale},
             {edge, 1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, smoothing_r},
             {floor_strength(scene, PictureEffectKind::Shadows),
-             floor_strength(scene, PictureEffectKind::Caustics), listed ? 0 : soft_level, 0},
+             floor_strength(scene, PictureEffectKind::Caustics), 0, 0},
             {}};
   for (std::size_t k = 0; k < 3; ++k)
     block_.absorption[k] = static_cast<float>(scene.light.absorption_per_m[k]);

@@ -32,7 +32,7 @@ struct GBuffer {
   /// covers the water, random normals are mixed in (shaders/composite.comp).
   std::vector<float> normal;
   /// Sum of the chords of all spheres along the ray of the pixel's thickness cell, m, not smoothed. The path
-  /// length in water is this sum / RenderOptions::packing.
+  /// length in water is this sum / (RenderOptions::packing * RenderOptions::radius_scale^3).
   std::vector<float> thickness;
   std::vector<std::uint32_t> front;  ///< index of the front particle, or no_particle
   std::vector<float> radius;         ///< radius of the front particle, m; 0 without fluid
