@@ -20,7 +20,7 @@ layout(std430, binding = 7) writeonly buffer Shown { float shown[]; };
 const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
 const float no_way_out = 1.0 - into_water * into_water;  // squared cosine at a wall below which light stays in water
 const float back_spread = 0.15;  // angle by which the unknown back of water away from the walls spreads light, rad
-const float most_steep = 3.0;  // smallest jump between layers of water that are seen at a slant, 2 particle radii
+const float most_steep = 3.0;   // smallest jump of depth that is no slanted surface, two splatted radii
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.01;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
@@ -60,9 +60,9 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
   return vec2(0.0);
 }
 
-// Light that the surface with the normal n mirrors towards the eye along d. A ray that is mirrored downwards meets water
-// again: its light is that of the direction mirrored once more, less what the water takes. Two kinds of rays
-// do not: upright water at the near glass mirrors the ground, and a ray that hardly turns passes the water's rim.
+// Light that the surface with the normal n mirrors into the eye's ray d. A ray that is mirrored downwards meets water
+// again: its light is that of the direction mirrored once more, less what the water takes. Two kinds of rays do not:
+// upright water at the near glass mirrors the ground, and a ray that hardly turns passes the water's rim.
 vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float share, float radius, float width_per_m) {
   vec3 mirrored = reflect(d, n);
 #ifdef OBSTACLES
@@ -92,8 +92,8 @@ struct Behind {
 };
 
 // The way of the eye's ray d through the water. `bend`: how far the normal n turns within the pixel; the footprint
-// widens by the angle by which refraction then spreads the rays. `length_m`: of the water along d; `wall_m`: way along d
-// to the tank's wall or an obstacle.
+// widens by the angle by which refraction then spreads the rays. `length_m`: of the water along d; `wall_m`: way along
+// d to the tank's wall or an obstacle.
 Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float wall_m, float radius,
                  float footprint_per_m, float distance_m) {
   const vec3 inside = refract(d, n, into_water);
@@ -131,12 +131,12 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
 // Mean of two steps of nearness, of those that count.
 float mean_step(vec2 steps, vec2 counts) { return dot(steps, counts) / max(counts.x + counts.y, 1.0); }
 
-// The normal of a pixel for shading, in eye space: that of the mean steps of nearness to the neighbours. Beside a jump of
-// depth it is the mean normal of the neighbours on the same layer, unless the mean steps are steeper: on water that is
-// seen at a slant, each particle is a ledge whose own normal faces the eye too much. Two normals are replaced: at the
-// picture's border, to which the depth filter reaches from one side only, by that of a pixel further inside; and one
-// that faces away from the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to the
-// next.
+// The normal of a pixel for shading, in eye space: that of the mean steps of nearness to the neighbours. Beside a jump
+// of depth it is the mean normal of the neighbours on the same layer, unless the mean steps are steeper: on water that
+// is seen at a slant, each particle is a ledge whose own normal faces the eye too much. Two normals are replaced: at
+// the picture's border, to which the depth filter reaches from one side only, by that of a pixel further inside; and
+// one that faces away from the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to
+// the next.
 vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
   const ivec2 low = max(pixel - 1, ivec2(0)), high = min(pixel + 1, size.xy - 1);
