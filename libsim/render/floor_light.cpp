@@ -20,10 +20,11 @@ constexpr float caustic_units = 65536;  // light units of a cell without water (
 constexpr int border_cells = 8;         // additional surface cells per side, for the smoothing
 constexpr float smoothing_r =
     2;  // standard deviation, particle radii; waves 11 radii long keep half their height
-constexpr int surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
+constexpr float surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
 
 // Where only [light] asks for a shadow, the maps are coarser and the shadow softer.
 constexpr int soft_cells = 128;
+constexpr float soft_surface_cell_in_cells = 1.5F;
 constexpr float soft_strength = 0.7F;
 
 bool lists_light(const Scene& scene) {
@@ -55,7 +56,7 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const bool listed = lists_light(scene);
   const int most_cells = listed ? options.floor_cells : std::min(options.floor_cells, soft_cells);
   const float edge = longest / static_cast<float>(most_cells);
-  const float surface_edge = edge * surface_cell_in_cells;
+  const float surface_edge = edge * (listed ? surface_cell_in_cells : soft_surface_cell_in_cells);
   // Assumed upper bound of the water's depth, from which the extent of the surface map beyond the floor
   // follows: the tank's height, or the floor's longer side if that is less.
   const float deepest = std::min(tank(1), longest);
