@@ -134,6 +134,7 @@ struct Make {
   std::uint8_t* history;
   float* saliency;
   float* unrest;
+  Vec4* drift;
   Descents descents;
   int first;
   float support;
@@ -147,6 +148,7 @@ struct Make {
     if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);  // four entries of two bits
     if (saliency) saliency[i] = 0;
     if (unrest) unrest[i] = 0;
+    if (drift) drift[i] = {0, 0, 0, 0};
     descents.make(i);
   }
 };
@@ -220,6 +222,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                 .history = p.history(),
                 .saliency = p.saliency(),
                 .unrest = p.unrest(),
+                .drift = p.drift(),
                 .descents = particles.descents(),
                 .first = staying,
                 .support = supports.h[level],

@@ -67,7 +67,7 @@ class CornerColumns {
 using ExchangeView =
     ColumnView<columns(Column::Position, Column::Id, Column::Level),
                columns(Column::Position, Column::Id, Column::Level), columns(Column::Temperature),
-               columns(Column::Target, Column::History, Column::Saliency, Column::Unrest)>;
+               columns(Column::Target, Column::History, Column::Saliency, Column::Unrest, Column::Drift)>;
 
 /// Exchanges particles of any levels for particles of one level, with equal mass in units of m_*.
 class Exchange {

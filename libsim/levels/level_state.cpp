@@ -10,11 +10,15 @@ struct Begin {
   std::uint8_t* history;
   std::uint8_t* age;
   std::uint8_t* waiting;
+  const Vec4* velocity;
+  Vec4* drift;
   SIM_FN void operator()(int i) const {
     target[i] = level[i];
     history[i] = steady_history(level[i]);
     age[i] = 255;
     waiting[i] = 0;
+    const Vec3 v = xyz(velocity[i]);
+    if (drift) drift[i] = with_w(v, dot(v, v));
   }
 };
 
@@ -28,7 +32,9 @@ void LevelState::begin(NewLevelsView p) {
                  .target = p.target(),
                  .history = p.history(),
                  .age = p.age(),
-                 .waiting = p.waiting()});
+                 .waiting = p.waiting(),
+                 .velocity = p.velocity(),
+                 .drift = p.drift()});
 }
 
 }  // namespace sim::SIM_BACKEND

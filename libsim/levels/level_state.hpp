@@ -105,8 +105,9 @@ struct TargetSphere {
   int inside = 0, outside = 0;
 };
 
-using NewLevelsView = ColumnView<columns(Column::Level),
-                                 columns(Column::Target, Column::History, Column::Age, Column::Waiting)>;
+using NewLevelsView = ColumnView<columns(Column::Level, Column::Velocity),
+                                 columns(Column::Target, Column::History, Column::Age, Column::Waiting),
+                                 ColumnSet{}, columns(Column::Drift)>;
 
 struct LevelState {
   LevelRules rules;
@@ -116,7 +117,7 @@ struct LevelState {
   /// a particle split or merged in this frame, or could have split but for the capacity
   bool changed = false;
   Array<LevelCounts> counts;
-  /// Initialises Target, History, Age and Waiting; called once when a run begins.
+  /// Initialises Target, History, Age, Waiting and Drift; called once when a run begins.
   void begin(NewLevelsView particles);
 
   // Scratch arrays of one frame. They are members, so that each frame reuses their memory.

@@ -34,8 +34,10 @@ struct Calm {
 
   // Contains no branch, so that loops that call this operator vectorise.
   SIM_FN float operator()(float vx, float vy, float vz) const {
-    return at_least(most - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
+    return of_square(vx * vx + vy * vy + vz * vz);
   }
+  /// The degree at a speed with this square, m2/s2.
+  SIM_FN float of_square(float square) const { return at_least(most - inverse_square * square, 0.0f); }
 };
 
 /// Calm with the limit speed share x sqrt(g d_*): g in m/s2, finest spacing d_* in m. Without gravity no

@@ -57,8 +57,9 @@ enum class Descent {
 //   Unrest          temporal feature before occlusion, f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
 //   SaliencyParts   f_a, f_m, f_T and F, from which s follows
 //   Waiting         number of consecutive frames in which the particle was ready to merge
-//   Normal          scratch of the effects (libsim/scene/effects.hpp): normal of the water's surface,
-//                   dimensionless, or another vector
+//   Normal          output of the average Drift, then swapped with it; later scratch of the effects
+//                   (libsim/scene/effects.hpp): normal of the water's surface, dimensionless, or another
+//                   vector
 //   Ease            share (0, 1] of the density constraint that a particle enforces; below 1 near particles
 //                   that a split or a merge has just made
 //   Age             frames since a split, a merge or a nozzle made the particle, at most 255; starts at 255
@@ -67,6 +68,8 @@ enum class Descent {
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature
 //   Swirl           rotation rate of the surrounding water, 1/s, last measured by the effect vorticity
+//   Drift           x, y, z: the velocity averaged over neighbours and over time, m/s; w: the largest recent
+//                   square of this average, m2/s2, averaged over neighbours too
 #define SIM_COLUMNS(COLUMN, LIST)                                         \
   COLUMN(Position, position, Vec4, Core, Own)                             \
   COLUMN(Velocity, velocity, Vec4, Core, Own)                             \
@@ -91,7 +94,8 @@ enum class Descent {
   COLUMN(StartCell, start_cell, int, Kept, Copy)                          \
   COLUMN(Temperature, temperature, float, Kept, MassMean)                 \
   COLUMN(TemperatureNext, temperature_next, float, Scratch, None)         \
-  COLUMN(Swirl, swirl, float, Kept, MassMean)
+  COLUMN(Swirl, swirl, float, Kept, MassMean)                             \
+  COLUMN(Drift, drift, Vec4, Kept, Copy)
 
 enum class Column : unsigned {
 #define SIM_ENUMERATOR(Name, ...) Name,

@@ -38,6 +38,7 @@ struct Gather {
   Extras<std::uint8_t> bytes;
   Extras<float> floats;
   Extras<int> ints;
+  Extras<Vec4> vectors;
   Extras<SaliencyParts> parts;
   SIM_FN void operator()(int i) const {
     const int from = order[i];
@@ -49,6 +50,7 @@ struct Gather {
     bytes.gather(i, from);
     floats.gather(i, from);
     ints.gather(i, from);
+    vectors.gather(i, from);
     parts.gather(i, from);
   }
 };
@@ -156,6 +158,7 @@ std::size_t Particles::bytes() const {
   add(spare_bytes_);
   add(spare_floats_);
   add(spare_ints_);
+  add(spare_vectors_);
   add(spare_parts_);
   for_each_column(*this, [&](const auto& column, bool, Life, Descent) { sum += column.bytes(); });
   return sum;
@@ -183,6 +186,7 @@ void Particles::reorder(const Array<int>& order) {
   const auto bytes = kept_columns<std::uint8_t>();
   const auto floats = kept_columns<float>();
   const auto ints = kept_columns<int>();
+  const auto vectors = kept_columns<Vec4>();
   const auto parts = kept_columns<SaliencyParts>();
   auto& c = columns_;
   // PredictedNext and VelocityNext serve as destinations, because no pass reads their values after a
@@ -204,6 +208,7 @@ void Particles::reorder(const Array<int>& order) {
                   .bytes = extras(bytes, spare_bytes_),
                   .floats = extras(floats, spare_floats_),
                   .ints = extras(ints, spare_ints_),
+                  .vectors = extras(vectors, spare_vectors_),
                   .parts = extras(parts, spare_parts_)});
   c.position.swap(spare_a_);
   c.predicted.swap(predicted_to);
@@ -213,6 +218,7 @@ void Particles::reorder(const Array<int>& order) {
   swap_extras(bytes, spare_bytes_);
   swap_extras(floats, spare_floats_);
   swap_extras(ints, spare_ints_);
+  swap_extras(vectors, spare_vectors_);
   swap_extras(parts, spare_parts_);
   if (n != n_) resize(n);
 }

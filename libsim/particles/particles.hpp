@@ -114,6 +114,7 @@ class Particles {
   std::vector<Array<std::uint8_t>> spare_bytes_;
   std::vector<Array<float>> spare_floats_;
   std::vector<Array<int>> spare_ints_;
+  std::vector<Array<Vec4>> spare_vectors_;
   std::vector<Array<SaliencyParts>> spare_parts_;
 };
 

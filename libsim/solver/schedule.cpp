@@ -147,7 +147,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
   // Columns that have values before the first pass: creating a particle sets them.
-  ColumnSet written = out.columns | columns(Column::Target, Column::History) | ruled_columns();
+  ColumnSet written = out.columns | columns(Column::Target, Column::History, Column::Drift) | ruled_columns();
   for (const auto& stage : stages) {
     const std::string reason = reason_for(stage, demand);
     if (reason.empty()) {

@@ -10,7 +10,9 @@ namespace {
 
 /// v += (x* - (x + dt v)) / dt, with x* the predicted position: equal to v = (x* - x) / dt, but without the
 /// rounding of x if no projection moves the particle. The fourth component of the velocity becomes the degree
-/// of rest, 0 to 1. The viscosity pass reads it and resets it to 0.
+/// of rest, 0 to 1. The viscosity pass reads it and resets it to 0. With levels, water is at rest if the mean
+/// motion of its surroundings (the column Drift) is slow. The particle's own speed does not count: in short
+/// substeps the projections make every particle jitter, at rest as in a wave.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
@@ -23,6 +25,7 @@ struct Advance {
   Vec4* kick;
   Brake brake;
   float dt;
+  const Vec4* drift;     ///< nullptr without levels
   Calm still;            ///< criterion of rest for the finest particles
   float finest_support;  ///< support of particles of level 0, m
   /// true: particles that were at rest before this substep's velocity change count as at rest too
@@ -33,8 +36,12 @@ struct Advance {
     Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
     if (before) after += ((1 / time(i) - 1) / dt) * (xyz(predicted[i]) - xyz(before[i]));
     const Vec3 kept = brake.limited(after, predicted[i].w, i);
-    const float now = rest(kept, predicted[i].w);
-    velocity[i] = with_w(kept, before_kicks ? at_least(now, rest(v, predicted[i].w)) : now);
+    if (drift) {
+      velocity[i] = with_w(kept, at_most(2 * still.of_square(drift[i].w), 1.0f));
+    } else {
+      const float now = rest(kept, predicted[i].w);
+      velocity[i] = with_w(kept, before_kicks ? at_least(now, rest(v, predicted[i].w)) : now);
+    }
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     // No particle moves farther than the speed limit allows: many particles at one position would otherwise
     // be thrown far into other water in one substep.
@@ -51,12 +58,15 @@ struct Advance {
 
 using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
-               columns(Column::Velocity, Column::Position), columns(Column::VelocityNext, Column::Active),
-               columns(Column::PredictedNext)>;
+               columns(Column::Velocity, Column::Position),
+               columns(Column::VelocityNext, Column::Active, Column::Drift), columns(Column::PredictedNext)>;
 
 /// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
 /// size").
 constexpr double short_from = 800;
+/// Largest speed of the mean motion of water at rest, as a share of the speed below which a particle of water
+/// without levels is at rest.
+constexpr double drift_share = 0.6;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
@@ -67,7 +77,9 @@ void run_velocity(FluidState& state, VelocityColumns p) {
   // limit is raised.
   const double shorter =
       gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
-  const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);
+  const bool drifts = p.has(Column::Drift) && !state.one_level;
+  const double still_speed =
+      static_cast<double>(k.still_speed) * (drifts ? drift_share : std::pow(std::max(1.0, shorter), 0.25));
   // PredictedNext stores the velocity changes, because its positions are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -79,9 +91,10 @@ void run_velocity(FluidState& state, VelocityColumns p) {
                    .kick = kick,
                    .brake = state.brake(p.id(), 1),
                    .dt = k.dt,
+                   .drift = drifts ? p.drift() : nullptr,
                    .still = calm_below(still_speed, gravity, static_cast<double>(state.finest_support) / 2),
                    .finest_support = state.finest_support,
-                   .before_kicks = shorter > 1 || p.has(Column::Ease)});
+                   .before_kicks = shorter > 1});
 }
 
 }  // namespace

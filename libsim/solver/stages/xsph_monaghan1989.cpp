@@ -1,9 +1,31 @@
+#include <algorithm>
+#include <cmath>
+
 #include "libsim/particles/calm.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
 namespace {
+
+/// The average of velocities over neighbours and over time. It tells motion of the water from the jitter of
+/// single particles. Both have the same speed in a wave with short substeps, but jitter has no mean.
+struct DriftAverage {
+  const Vec4* drift;
+  Vec4* next;
+  float mixed;     ///< share of the difference to neighbours that one substep removes from the average
+  float followed;  ///< share of the difference to the velocity that one substep removes
+  float kept;      ///< share of the largest recent square that remains after one substep
+
+  /// The average after a substep. mean: the average before, mixed with that of neighbours. An average that is
+  /// not finite begins anew at 0, else it would spread to all water.
+  SIM_FN Vec4 after(Vec4 mean, Vec3 velocity) const {
+    const Vec3 u = xyz(mean) + followed * (velocity - xyz(mean));
+    const float square = dot(u, u);
+    if (!(square + mean.w < 1e30f)) return {0, 0, 0, 0};
+    return with_w(u, at_least(square, kept * mean.w));
+  }
+};
 
 /// Filters of velocities in addition to the viscosity. Runs without splits and merges use NoFilter;
 /// docs/decisions.md, "Still water of one size", describes how their water comes to rest. Runs with splits
@@ -28,6 +50,7 @@ struct RestingWater {
   /// gravity or with Readings::calm_speed 0, the share is 1.
   float in_motion;
   float viscosity;  ///< additional viscosity of water at rest, as a multiple of the fluid's viscosity
+  DriftAverage average;
 
   /// Degree to which the particle was at rest before the substep's velocity change (kick).
   SIM_FN float rest(Vec4 v, int i) const {
@@ -70,16 +93,19 @@ struct Xsph {
     float spread;    ///< 22 nu times the time since it was last solved, m2
     Vec4 kick{};     ///< velocity change in the substep; only with a filter
     float rest = 0;  ///< degree of rest before this change; only with a filter
+    Vec4 drift{};    ///< only with a filter
   };
 
-  /// Adds particle j to the change of velocity; a separate function, so that the loop vectorises (SIM_LANES).
-  SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
+  /// Adds particle j to the change of velocity and, with a filter, to the change d of the average Drift; a
+  /// separate function, so that the loop vectorises (SIM_LANES).
+  SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz, float& dx, float& dy, float& dz,
+                  float& dw) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);
-    const float dx = me.at.x - other.x;
-    const float dy = me.at.y - other.y;
-    const float dz = me.at.z - other.z;
-    const float weight = quotient(me.pair.mass_ratio(other.w) * kernel.density(dx * dx + dy * dy + dz * dz),
+    const float x = me.at.x - other.x;
+    const float y = me.at.y - other.y;
+    const float z = me.at.z - other.z;
+    const float weight = quotient(me.pair.mass_ratio(other.w) * kernel.density(x * x + y * y + z * z),
                                   me.density + density[j]);
     const Vec4 v = velocity[j];
     float thicker = 1;
@@ -91,6 +117,11 @@ struct Xsph {
       vx += share * (kick.x - me.kick.x);
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
+      const Vec4 drift = filter.average.drift[j];
+      dx += weight * (drift.x - me.drift.x);
+      dy += weight * (drift.y - me.drift.y);
+      dz += weight * (drift.z - me.drift.z);
+      dw += weight * (drift.w - me.drift.w);
     }
     const float viscous = at_most(thicker * me.spread * reciprocal(kernel.h2), most_share);
     const float calmed = at_most(me.still, v.w);
@@ -106,6 +137,7 @@ struct Xsph {
     if constexpr (!Selection::everyone) {
       if (i < 0) {
         next[~i] = with_w(xyz(velocity[~i]), 0);
+        if constexpr (Filter::filters) filter.average.next[~i] = filter.average.drift[~i];
         return;
       }
     }
@@ -114,14 +146,28 @@ struct Xsph {
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
       me.rest = filter.rest(own, i);
+      me.drift = filter.average.drift[i];
     }
     float vx = 0;
     float vy = 0;
     float vz = 0;
+    float dx = 0;
+    float dy = 0;
+    float dz = 0;
+    float dw = 0;
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(vx, vy, vz)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz);
+    if constexpr (Filter::filters) {
+      SIM_LANES(vx, vy, vz, dx, dy, dz, dw)
+      for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz, dx, dy, dz, dw);
+      dx = team.sum(dx);
+      dy = team.sum(dy);
+      dz = team.sum(dz);
+      dw = team.sum(dw);
+    } else {
+      SIM_LANES(vx, vy, vz)
+      for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz, dx, dy, dz, dw);
+    }
     vx = team.sum(vx);
     vy = team.sum(vy);
     vz = team.sum(vz);
@@ -129,6 +175,13 @@ struct Xsph {
     // Volume m_i / rho_0; densities are relative to rho_0.
     const float scale = 2 * mass_of(me.at.w, 1);
     next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
+    if constexpr (Filter::filters) {
+      const DriftAverage& average = filter.average;
+      const float mixed = average.mixed * scale;
+      const Vec4 was = me.drift;
+      average.next[i] = average.after(
+          {was.x + mixed * dx, was.y + mixed * dy, was.z + mixed * dz, was.w + mixed * dw}, xyz(next[i]));
+    }
   }
 };
 
@@ -163,8 +216,24 @@ void run_xsph(FluidState& state, XsphColumns p) {
 }
 
 using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours,
-                                      Column::Ease, Column::PredictedNext),
-                              columns(Column::VelocityNext, Column::Velocity)>;
+                                      Column::Ease, Column::PredictedNext, Column::Drift),
+                              columns(Column::VelocityNext, Column::Velocity, Column::Drift, Column::Normal)>;
+
+/// Time scales of the average Drift, in sqrt(d_* / g) with the finest spacing d_*: the average follows the
+/// velocity within `follow`; a largest square fades within `keep`, so that a wave still counts as moving when
+/// it turns; within `mix` the average of one place spreads to its neighbours (docs/decisions.md, "Still water
+/// with levels").
+struct DriftTimes {
+  static constexpr double follow = 2.5, keep = 12, mix = 0.05;
+};
+
+/// The share dt / time of a substep, at most 1; 0 without gravity, where no water counts as at rest.
+float share_of(const FluidState& state, double time) {
+  const double g = static_cast<double>(state.parameters.gravity.strength);
+  if (!(g > 0)) return 0;
+  const double unit = std::sqrt(static_cast<double>(state.finest_support) / 2 / g);
+  return static_cast<float>(std::min(1.0, static_cast<double>(state.parameters.dt) / (time * unit)));
+}
 
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
@@ -175,7 +244,13 @@ void run_levels(FluidState& state, LevelsView p) {
                              .strength = rules.kick_filter,
                              .calm = calm,
                              .in_motion = calm.most > 0 ? 0.4f : 1,
-                             .viscosity = rules.calm_viscosity});
+                             .viscosity = rules.calm_viscosity,
+                             .average = {.drift = p.drift(),
+                                         .next = p.normal(),
+                                         .mixed = share_of(state, DriftTimes::mix),
+                                         .followed = share_of(state, DriftTimes::follow),
+                                         .kept = 1 - share_of(state, DriftTimes::keep)}});
+  p.swap<Column::Drift, Column::Normal>();
 }
 
 }  // namespace

@@ -160,6 +160,48 @@ SIM_TEST(Xsph, IsAKinematicViscosityAtEverySizeAndTimeStep) {
   EXPECT_NEAR(-std::log(left) / (expected / 4), 1, 0.12);
 }
 
+/// Mean degree of rest of water that flows at `flow` m/s for a second and then at `later` m/s for a tenth of
+/// a second, while each particle also jitters at 0.5 m/s along each axis with a new direction in each
+/// substep.
+double rest_in_jitter(float flow, float later) {
+  std::vector<Vec4> points;
+  constexpr int side = 10;
+  constexpr float h = 0.14f;
+  for (int i = 0; i < side * side * side; ++i)
+    points.push_back({h / 2 * static_cast<float>(i % side), h / 2 * static_cast<float>(i / side % side),
+                      h / 2 * static_cast<float>(i / side / side), h});
+  FluidState state = listed(points);
+  state.one_level = false;
+  state.finest_support = h;
+  state.parameters.dt = 1.0f / 240;
+  state.parameters.most_speed = 1000;
+  auto& p = state.particles.all();
+  p.density.from_host(std::vector<float>(points.size(), 1));
+  p.ease.from_host(std::vector<float>(points.size(), 1));
+  p.drift.zero();
+  std::mt19937 random(4);
+  std::bernoulli_distribution forward;
+  const auto jitter = [&] { return forward(random) ? 0.5f : -0.5f; };
+  std::vector<Vec4> velocity(points.size());
+  for (int substep = 0; substep < 264; ++substep) {
+    for (Vec4& v : velocity) v = {(substep < 240 ? flow : later) + jitter(), jitter(), jitter(), 0};
+    p.velocity.from_host(velocity);
+    p.predicted_next.zero();
+    xsph_of_levels_stage().run(state);
+  }
+  p.predicted.from_host(p.position.to_host());
+  velocity_stage().run(state);
+  double sum = 0;
+  for (const Vec4& v : p.velocity.to_host()) sum += static_cast<double>(v.w);
+  return sum / static_cast<double>(points.size());
+}
+SIM_TEST(Drift, TellsMotionFromJitterAndLastsWhileAWaveTurns) {
+  EXPECT_GT(rest_in_jitter(0, 0), 0.9) << "jitter has no mean";
+  EXPECT_LT(rest_in_jitter(0.2f, 0.2f), 0.01) << "the water flows";
+  EXPECT_LT(rest_in_jitter(0.2f, 0), 0.01) << "it flowed a tenth of a second ago";
+  EXPECT_GT(rest_in_jitter(0.02f, 0.02f), 0.9) << "it flows more slowly than the limit";
+}
+
 SIM_TEST(Density, OneLevelAndMixedKernelsAgreeAtOneLevel) {
   auto one = state_of(crowd(100, 9, false), true);
   auto mixed = state_of(crowd(100, 9, false), false);
