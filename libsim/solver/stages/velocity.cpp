@@ -66,7 +66,7 @@ using VelocityColumns =
 constexpr double short_from = 800;
 /// Largest speed of the mean motion of water at rest, as a share of the speed below which a particle of water
 /// without levels is at rest.
-constexpr double drift_share = 0.6;
+constexpr double drift_share = 0.45;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
