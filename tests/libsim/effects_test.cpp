@@ -155,7 +155,9 @@ TEST(Effects, OfCoefficientZeroCostNothingAndChangeNoBit) {
     EXPECT_EQ(bare.launches.count("cohesion"), 0u);
     EXPECT_GT(with.launches.at("cohesion"), 0) << method.name;
     // With levels the average Drift uses the column of the surface normals in any case.
-    if (!method.adaptive()) EXPECT_GT(with.bytes, bare.bytes) << method.name;
+    if (!method.adaptive()) {
+      EXPECT_GT(with.bytes, bare.bytes) << method.name;
+    }
     EXPECT_FALSE(same_bits(with.state, bare.state)) << method.name;
     EXPECT_THAT(with.explanation, HasSubstr("the scene lists tension_n_m = 20"));
   }
