@@ -64,8 +64,8 @@ using VelocityColumns =
 /// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
 /// size").
 constexpr double short_from = 800;
-/// Largest speed of the mean motion of water at rest, as a share of the speed below which a particle of water
-/// without levels is at rest.
+/// Limit speed for the mean motion of water at rest with levels, as a share of the limit speed for a particle
+/// of water without levels (docs/decisions.md, "Boiling and waves").
 constexpr double drift_share = 0.45;
 
 void run_velocity(FluidState& state, VelocityColumns p) {

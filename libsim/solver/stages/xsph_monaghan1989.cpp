@@ -221,8 +221,8 @@ using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column
 
 /// Time scales of the average Drift, in sqrt(d_* / g) with the finest spacing d_*: the average follows the
 /// velocity within `follow`; a largest square fades within `keep`, so that a wave still counts as moving when
-/// it turns; within `mix` the average of one place spreads to its neighbours (docs/decisions.md, "Still water
-/// with levels").
+/// it turns; within `mix` the average of one place spreads to its neighbours (docs/decisions.md, "Boiling and
+/// waves").
 struct DriftTimes {
   static constexpr double follow = 2.5, keep = 12, mix = 0.05;
 };
