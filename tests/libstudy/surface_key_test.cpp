@@ -8,26 +8,17 @@
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 #include "stats/inference/power.hpp"
+#include "tests/common/protocols.hpp"
 
 using namespace study;
+using namespace test;
 using testing::AllOf;
 using testing::HasSubstr;
 
 namespace {
 
-std::string shipped(const std::string& name) {
-  return base::read_file(VIP_TEST_DIR "/../protocols/" + name + ".toml", 1 << 20);
-}
-
 Protocol read(const std::string& text) { return parse_protocol(text, "own.toml"); }
-
-std::string changed(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 std::string error_of(const std::string& text) {
   try {
@@ -41,34 +32,35 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST(SurfaceKey, StandsInTheStimulusOrInTheLevelsOfAFactor) {
-  const Protocol varied = read(shipped("surface"));
+  const Protocol varied = read(shipped_text("surface"));
   ASSERT_EQ(varied.design.cells.size(), 12u);
   for (const Cell& cell : varied.design.cells) {
     EXPECT_EQ(cell.stimulus.surface, level_name(varied.design, cell, 0));
     EXPECT_EQ(treatment_name(cell.stimulus), cell.stimulus.method + ", " + cell.stimulus.surface);
   }
-  const Protocol same = read(changed(shipped("hitches"), "n_star =", "surface = \"spheres\"\nn_star ="));
+  const Protocol same =
+      read(replaced(shipped_text("hitches"), "n_star =", "surface = \"spheres\"\nn_star ="));
   for (const Cell& cell : same.design.cells) EXPECT_EQ(cell.stimulus.surface, "spheres");
-  for (const Cell& cell : read(shipped("hitches")).design.cells) EXPECT_EQ(cell.stimulus.surface, "");
+  for (const Cell& cell : read(shipped_text("hitches")).design.cells) EXPECT_EQ(cell.stimulus.surface, "");
 }
 
 TEST(SurfaceKey, IsRefusedWithPlaceAndMend) {
-  const std::string text = shipped("surface");
+  const std::string text = shipped_text("surface");
   EXPECT_THAT(
-      error_of(changed(text, "surface = \"spheres\"\n\n[[factor.level]]",
-                       "surface = \"balls\"\n\n[[factor.level]]")),
+      error_of(replaced(text, "surface = \"spheres\"\n\n[[factor.level]]",
+                        "surface = \"balls\"\n\n[[factor.level]]")),
       AllOf(HasSubstr("own.toml:"), HasSubstr("\"balls\""), HasSubstr("ellipsoids"), HasSubstr("mend: ")));
-  EXPECT_THAT(error_of(changed(text, "surface = \"ellipsoids\"\n", "")),
+  EXPECT_THAT(error_of(replaced(text, "surface = \"ellipsoids\"\n", "")),
               HasSubstr("sets other keys than the first level"));
-  EXPECT_THAT(error_of(changed(text, "method = \"Ours\"", "method = \"Ours\"\nsurface = \"spheres\"")),
+  EXPECT_THAT(error_of(replaced(text, "method = \"Ours\"", "method = \"Ours\"\nsurface = \"spheres\"")),
               HasSubstr("sets other keys than the first level"));
   // Format 2 has no such factor.
-  EXPECT_THAT(error_of(changed(shipped("task2"), "groups = 1", "groups = 1\nsurface = \"spheres\"")),
+  EXPECT_THAT(error_of(replaced(shipped_text("task2"), "groups = 1", "groups = 1\nsurface = \"spheres\"")),
               HasSubstr("'design.surface' is not a known key"));
 }
 
 TEST(Standards, OfSomeFactorsHaveTheComparisonsLevelsOfTheOthers) {
-  const Protocol protocol = read(shipped("surface"));
+  const Protocol protocol = read(shipped_text("surface"));
   const Design& design = protocol.design;
   const auto groups = cell_groups(design);
   ASSERT_EQ(groups.size(), 1u);
@@ -98,11 +90,11 @@ TEST(Standards, OfSomeFactorsHaveTheComparisonsLevelsOfTheOthers) {
 }
 
 TEST(Standards, NeedAComparisonAndALevel) {
-  const std::string text = shipped("surface"), standard = "standard = {surface = \"spheres\"}";
-  EXPECT_THAT(error_of(changed(text, standard, "standard = {}")), HasSubstr("names no level"));
-  EXPECT_THAT(error_of(changed(text, standard, "standard = {surfaces = \"spheres\"}")),
+  const std::string text = shipped_text("surface"), standard = "standard = {surface = \"spheres\"}";
+  EXPECT_THAT(error_of(replaced(text, standard, "standard = {}")), HasSubstr("names no level"));
+  EXPECT_THAT(error_of(replaced(text, standard, "standard = {surfaces = \"spheres\"}")),
               HasSubstr("names no level"));
-  EXPECT_THAT(error_of(changed(text, standard, "standard = {surface = \"spheres\", metod = \"Ours\"}")),
+  EXPECT_THAT(error_of(replaced(text, standard, "standard = {surface = \"spheres\", metod = \"Ours\"}")),
               HasSubstr("metod"));
   const std::string three = R"([[combination]]
 surface = "spheres"
@@ -123,17 +115,17 @@ scene = "jet_impact"
 
 [design])";
   EXPECT_THAT(
-      error_of(changed(text, "[design]", three)),
+      error_of(replaced(text, "[design]", three)),
       AllOf(HasSubstr("has no cell for the comparison with surface ellipsoids, method Ours, scene faucet"),
             HasSubstr("mend: ")));
   // The level of a procedure may not turn the standard.
-  EXPECT_THAT(error_of(changed(changed(shipped("hitch_quest"), "[design]",
-                                       "[design]\npairs = true\nstandard = "
-                                       "{look = \"old\"}"),
-                               "[[factor]]",
-                               "[[factor]]\nname = \"look\"\nvary = \"within\"\n[[factor.level]]\nname = "
-                               "\"old\"\nsurface = \"spheres\"\n[[factor.level]]\nname = \"new\"\nsurface = "
-                               "\"ellipsoids\"\n\n[[factor]]")),
+  EXPECT_THAT(error_of(replaced(replaced(shipped_text("hitch_quest"), "[design]",
+                                         "[design]\npairs = true\nstandard = "
+                                         "{look = \"old\"}"),
+                                "[[factor]]",
+                                "[[factor]]\nname = \"look\"\nvary = \"within\"\n[[factor.level]]\nname = "
+                                "\"old\"\nsurface = \"spheres\"\n[[factor.level]]\nname = \"new\"\nsurface = "
+                                "\"ellipsoids\"\n\n[[factor]]")),
               HasSubstr("has no level in standard"));
 }
 
@@ -145,5 +137,5 @@ TEST(SurfaceProtocol, HasTheParticipantsThatItsHeadCounts) {
   EXPECT_EQ(n, 24);
   const double wanted = std::ceil(n / relative_efficiency);
   EXPECT_EQ(wanted, 26);
-  EXPECT_EQ(read(shipped("surface")).participants, 26);
+  EXPECT_EQ(read(shipped_text("surface")).participants, 26);
 }
