@@ -27,8 +27,8 @@ struct Water {
   bool lid = true, blends = false;
   int most_ids = 4000;
 
-  Drawn draw(Ellipsoids& by, std::vector<Vec4> at, std::vector<int> ids = {}, int frame = 0, float follow = 1,
-             std::vector<Vec4> speeds = {}) {
+  Drawn draw(Ellipsoids& by, const std::vector<Vec4>& at, const std::vector<int>& ids = {}, int frame = 0,
+             float follow = 1, std::vector<Vec4> speeds = {}) {
     places = at;
     position.from_host(at);
     speeds.resize(at.size(), Vec4{0, 0, 0, 0});
@@ -54,9 +54,9 @@ struct Water {
     for (const RenderShape& one : out.shape) out.square.push_back(unpacked(one));
     return out;
   }
-  Drawn draw(std::vector<Vec4> at) {
+  Drawn draw(const std::vector<Vec4>& at) {
     Ellipsoids by;
-    return draw(by, std::move(at));
+    return draw(by, at);
   }
 };
 
