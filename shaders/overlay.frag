@@ -36,7 +36,9 @@ vec4 paint_at(ivec2 pixel) {
   return vec4(value == value ? facing * paint : vec3(1.0, 0.0, 1.0), 0.8);
 }
 
-// Outlines are smooth: a pixel takes the mean of its neighbours' paint with the weights 1, 2, 1 along each axis.
+// Outlines are smooth: a pixel takes the mean opacity of its neighbours with the weights 1, 2, 1 along each axis. Its
+// colour is its own paint, so that each class keeps the colour of the legend. A pixel without paint takes the mean
+// paint of its neighbours.
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy - origin.xy);
   vec4 sum = vec4(0.0);
@@ -46,5 +48,6 @@ void main() {
     sum += float((2 - abs(aside.x)) * (2 - abs(aside.y))) * vec4(paint.rgb * paint.a, paint.a);
   }
   if (sum.a == 0.0) discard;
-  colour = vec4(sum.rgb / sum.a, sum.a / 16.0);
+  const vec4 own = paint_at(pixel);
+  colour = vec4(own.a > 0.0 ? own.rgb : sum.rgb / sum.a, sum.a / 16.0);
 }

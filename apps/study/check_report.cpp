@@ -232,8 +232,10 @@ void print_stimuli(const CheckReport& report) {
   }
   if (bakes) {
     std::printf(
-        "to bake: vip-study bake --protocol FILE --out FOLDER --size WIDTHxHEIGHT, with the angle options of "
-        "run; to use: run --stimulus FOLDER\n");
+        "to bake: vip-study bake --protocol FILE --out FOLDER --size WIDTHxHEIGHT%s, with the angle options "
+        "of "
+        "run; to use: run --stimulus FOLDER\n",
+        study::varies_surface(report.protocol.design) ? " --keep pictures" : "");
   }
   const bool native = report.protocol.design.timing == TimingSource::Native;
   const bool hypotheses = report.protocol.design.factors.empty();

@@ -40,9 +40,7 @@ std::string why_none(const Protocol& protocol, const stats::AnalysisPlan& plan) 
   if (!protocol.design.effects.empty())
     return "effects are a factor, and " + ids_in_short(ids_of(claims_in_force(plan))) +
            " are about methods alone; what each level is worth is exploratory";
-  const auto& cells = protocol.design.cells;
-  if (std::any_of(cells.begin(), cells.end(),
-                  [&](const Cell& one) { return one.stimulus.surface != cells.front().stimulus.surface; }))
+  if (varies_surface(protocol.design))
     return "the surface is a factor, and " + ids_in_short(ids_of(claims_in_force(plan))) +
            " are about methods alone";
   if (protocol.design.timing == TimingSource::Settings)

@@ -133,14 +133,19 @@ std::string stimulus_name(const StimulusSpec& what) {
 }
 
 std::string measured_table(const MeasuredReport& report) {
-  std::size_t width = 28;
-  for (const MeasuredCell& one : report.cells) width = std::max(width, stimulus_name(one.what).size());
-  std::string out = fmt::format("{:<{}} {:<15} {:>9} {:>8} {:>8} {:>8}\n", "stimulus", width, "asked",
-                                "frames/s", "sd", "p95 ms", "tau min");
+  const auto asked = [](const MeasuredCell& one) {
+    return one.setting.mean > 0 ? setting_name(one.setting) : "as it runs";
+  };
+  std::size_t width = 28, asked_width = 15;
   for (const MeasuredCell& one : report.cells) {
-    const std::string asked = one.setting.mean > 0 ? setting_name(one.setting) : "as it runs";
-    out += fmt::format("{:<{}} {:<15} {:9.1f} {:8.2f} {:8.1f} {:8.2f}  ", stimulus_name(one.what), width,
-                       asked, one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
+    width = std::max(width, stimulus_name(one.what).size());
+    asked_width = std::max(asked_width, asked(one).size());
+  }
+  std::string out = fmt::format("{:<{}} {:<{}} {:>9} {:>8} {:>8} {:>8}\n", "stimulus", width, "asked",
+                                asked_width, "frames/s", "sd", "p95 ms", "tau min");
+  for (const MeasuredCell& one : report.cells) {
+    out += fmt::format("{:<{}} {:<{}} {:9.1f} {:8.2f} {:8.1f} {:8.2f}  ", stimulus_name(one.what), width,
+                       asked(one), asked_width, one.fps.mean, one.fps.sd, one.p95_ms, one.tau_min) +
            one.words + "\n";
   }
   return out;

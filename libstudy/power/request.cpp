@@ -44,11 +44,13 @@ void check_claims(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!shown.claims.empty()) return;
   std::string why;
   for (const auto& [id, reason, ids] : shown.left_out) why += (why.empty() ? "" : "; ") + id + ": " + reason;
-  throw base::Error("protocol " + protocol.name,
-                    "tests none of " + ids_in_short(ids_of(claims_in_force(plan))) +
-                        ", and power is computed for these alone (" + why + ")",
-                    "simulate it: vip-study run with --observer for several numbers of participants, then "
-                    "vip-stats report, which describes the answers of any protocol");
+  throw base::Error(
+      "protocol " + protocol.name,
+      "tests none of " + ids_in_short(ids_of(claims_in_force(plan))) +
+          ", and power is computed for these alone (" + why + ")",
+      "simulate it: vip-study run with --observer for several numbers of participants, then "
+      "vip-stats report, which describes the answers of any protocol, or vip-stats study, which "
+      "analyses designs with factors");
 }
 
 /// Share sd_method^2 / (sd_method^2 + sd_residual^2), from the mixed model of one score in the results.

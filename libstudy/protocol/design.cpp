@@ -38,6 +38,12 @@ bool is_standard(const Design& design, const Cell& cell) {
   return true;
 }
 
+bool varies_surface(const Design& design) {
+  return std::any_of(design.cells.begin(), design.cells.end(), [&](const Cell& one) {
+    return one.stimulus.surface != design.cells.front().stimulus.surface;
+  });
+}
+
 std::vector<std::vector<int>> cell_groups(const Design& design) {
   std::vector<std::vector<int>> out;
   for (std::size_t i = 0; i < design.cells.size(); ++i) {

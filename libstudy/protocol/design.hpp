@@ -127,6 +127,9 @@ std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std:
 /// True if the cell has the level of every factor that Design::standard names. Requires Design::standard.
 bool is_standard(const Design& design, const Cell& cell);
 
+/// True if the surface (StimulusSpec::surface) is not that of the first cell in all cells.
+bool varies_surface(const Design& design);
+
 /// The level of a factor of format 3 as text, such as "h50".
 const std::string& level_name(const Design& design, const Cell& cell, std::size_t factor);
 /// Levels of all factors, such as "hitch h50, content dam"; in format 2 treatment_name().

@@ -191,7 +191,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "drawn for each participant"},
 
       {"design.standard", "FACTOR", "text", "", "that of the comparison",
-       "a level of a within-subject factor; at least one is named, and that of a procedure"},
+       "a level of a within-subject factor. Name at least one factor. With `[procedure]`, name its factor "
+       "too"},
 
       {"design.moments", "scene", "text", "", "", "as in design.scene"},
       {"design.moments", "method", "text", "", "", "as in design.method"},

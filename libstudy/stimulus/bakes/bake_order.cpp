@@ -87,14 +87,15 @@ std::string picture_words(const sim::BakeHeader& header) {
 
 /// Differences between the surfaces of the drawn pictures. A bake that records none was drawn as ellipsoids,
 /// or as spheres by a version before ellipsoids; it will do where no surface is wanted.
-void add_surface(Departures& out, const sim::BakedView& found, const sim::BakedView& wanted) {
+void add_surface(Departures& out, const sim::BakeHeader& bake, const sim::BakedView& wanted) {
+  const sim::BakedView& found = bake.view;
   if (!found.drawn() || !wanted.drawn()) return;
   const auto words = [](const std::string& surface, const char* none) {
     return surface.empty() ? none : surface;
   };
   if (wanted.surface.empty() && found.surface != "spheres") return;
-  out.add("pictures of", words(found.surface, "a surface that is not recorded"),
-          words(wanted.surface, "ellipsoids"));
+  out.add(bake.has_pictures() ? "pictures of" : "particles of a method that followed pictures of",
+          words(found.surface, "a surface that is not recorded"), words(wanted.surface, "ellipsoids"));
 }
 
 std::string overlay_words(const sim::BakeHeader& header) {
@@ -167,7 +168,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
     else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
       out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
-  add_surface(out, found.view, wanted.view);
+  add_surface(out, found, wanted.view);
   // The bake's file stores a rounded content step.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
     out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),

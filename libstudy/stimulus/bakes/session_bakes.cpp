@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// For advice: without this option the bakes that are made hold particles alone.
+constexpr const char* keep_pictures = " --keep pictures";
+
 std::shared_ptr<const FoundBake> open_bake(const fs::path& path) {
   const sim::BakeReader bake(path);
   return std::make_shared<FoundBake>(FoundBake{path, bake.header(), bake.content_hash()});
@@ -138,15 +141,16 @@ void SessionBakes::use_folder(const Protocol& protocol, const SessionLook& look)
       for (std::string& one : view_departures(bake->header, wanted)) departures.push_back(std::move(one));
     }
     if (!departures.empty())
-      throw base::Error(
-          bake->path.string(), "holds " + base::joined(departures),
-          "make it again: vip-study bake --protocol FILE --out " + path_.string() + " " + options_);
+      throw base::Error(bake->path.string(), "holds " + base::joined(departures),
+                        "make it again: vip-study bake --protocol FILE --out " + path_.string() + " " +
+                            options_ + (bake->header.has_pictures() ? keep_pictures : ""));
     source.bake = bake;
     any = true;
   }
   if (!any)
     throw base::Error("--stimulus " + path_.string(), "holds no bake of this protocol",
-                      "make them: vip-study bake --protocol FILE --out " + path_.string() + " " + options_);
+                      "make them: vip-study bake --protocol FILE --out " + path_.string() + " " + options_ +
+                          (varies_surface(protocol.design) ? keep_pictures : ""));
 }
 
 const FoundBake* SessionBakes::of(const Cell& cell) const {
@@ -164,11 +168,13 @@ bool SessionBakes::whole() const {
 std::vector<std::string> SessionBakes::notes(const std::string& protocol_file) const {
   if (!fs::is_directory(path_)) return {};
   std::vector<std::string> baked, missing;
+  bool pictures = false;
   std::map<std::string, std::vector<std::string>> live;
   for (const Source& source : sources_) {
     const std::string name = short_words(source.planned.what);
     if (source.bake) {
       baked.push_back(name);
+      pictures = pictures || source.bake->header.has_pictures();
     } else if (source.planned.live.empty()) {
       missing.push_back(name);
     } else {
@@ -181,7 +187,7 @@ std::vector<std::string> SessionBakes::notes(const std::string& protocol_file) c
   if (!missing.empty())
     out.push_back(std::to_string(missing.size()) + " have no bake and run live: " + listed(missing) +
                   "; to make them: vip-study bake --protocol " + protocol_file + " --out " + path_.string() +
-                  " " + options_);
+                  " " + options_ + (pictures ? keep_pictures : ""));
   return out;
 }
 
