@@ -171,10 +171,12 @@ TEST(BakeOrder, PicturesOfAnotherSurfaceDepart) {
     b.fluid.surface = wanted;
     return base::joined(study::fluid_departures(study::header_of(a), study::header_of(b)));
   };
-  EXPECT_EQ(between("spheres", "ellipsoids"), "pictures of spheres instead of ellipsoids");
-  EXPECT_EQ(between("ellipsoids", "spheres"), "pictures of ellipsoids instead of spheres");
-  EXPECT_EQ(between("spheres", ""), "pictures of spheres instead of ellipsoids");
-  EXPECT_EQ(between("", "ellipsoids"), "pictures of a surface that is not recorded instead of ellipsoids");
+  const std::string drawn = "particles of a method that followed ";
+  EXPECT_EQ(between("spheres", "ellipsoids"), drawn + "pictures of spheres instead of ellipsoids");
+  EXPECT_EQ(between("ellipsoids", "spheres"), drawn + "pictures of ellipsoids instead of spheres");
+  EXPECT_EQ(between("spheres", ""), drawn + "pictures of spheres instead of ellipsoids");
+  EXPECT_EQ(between("", "ellipsoids"),
+            drawn + "pictures of a surface that is not recorded instead of ellipsoids");
   for (const char* surface : {"", "ellipsoids", "spheres"}) EXPECT_EQ(between(surface, surface), "");
   EXPECT_EQ(between("ellipsoids", ""), "");
   // A bake of particles whose method follows no picture is drawn when it is shown.
