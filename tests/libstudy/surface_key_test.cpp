@@ -12,7 +12,8 @@
 #include "tests/common/protocols.hpp"
 
 using namespace study;
-using namespace test;
+using ::test::replaced;
+using ::test::shipped_text;
 using testing::AllOf;
 using testing::HasSubstr;
 
