@@ -58,8 +58,8 @@ every pair of moments with sd_fps below mean_fps, make one cell. Cells of one sc
 participant meets `groups` of them, one after another.)"},
       {"design.standard", "standard",
        R"(The standard of two-interval trials, as in `standard = {hitch = "none"}`. A cell is compared with the
-standard that has the same level of every within-subject factor that `standard` does not name. So `standard = {surface
-= "spheres"}` compares two surfaces at each scene and method, and never two scenes.)"},
+standard that has the same level of every within-subject factor that `standard` does not name. So `standard =
+{surface = "spheres"}` compares two surfaces at each scene and method, and never two scenes.)"},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",
