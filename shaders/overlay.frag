@@ -36,9 +36,8 @@ vec4 paint_at(ivec2 pixel) {
   return vec4(value == value ? facing * paint : vec3(1.0, 0.0, 1.0), 0.8);
 }
 
-// Outlines are smooth: a pixel takes the mean opacity of its neighbours with the weights 1, 2, 1 along each axis. Its
-// colour is its own paint, so that each class keeps the colour of the legend. A pixel without paint takes the mean
-// paint of its neighbours.
+// Outlines are smooth: a pixel takes the mean of its neighbours' paint with the weights 1, 2, 1 along each axis. Inside
+// a class it takes its own colour, so that each class keeps the colour of the legend.
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy - origin.xy);
   vec4 sum = vec4(0.0);
@@ -49,5 +48,5 @@ void main() {
   }
   if (sum.a == 0.0) discard;
   const vec4 own = paint_at(pixel);
-  colour = vec4(own.a > 0.0 ? own.rgb : sum.rgb / sum.a, sum.a / 16.0);
+  colour = vec4(classes && own.a > 0.0 ? own.rgb : sum.rgb / sum.a, sum.a / 16.0);
 }

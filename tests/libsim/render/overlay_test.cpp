@@ -56,7 +56,8 @@ TEST_F(OverlayGl, ClassesHaveTheirOwnColoursAndNaNStandsOut) {
 }
 
 TEST_F(OverlayGl, OutlinesAreSmooth) {
-  // Two spheres of two classes before a wall: no step from pixel to pixel is that of an unpainted edge.
+  // Two spheres before a wall, of one class and of two values on the scale: no step from pixel to pixel is
+  // that of an unpainted edge.
   sim::FluidRenderer renderer(room(), render_test::open_options());
   sim::ParticleBuffer buffer;
   buffer.upload(std::vector<sim::RenderParticle>{{-0.3F, 0, -4, 0.5F}, {0.3F, 0, -4, 0.5F}});
@@ -64,20 +65,23 @@ TEST_F(OverlayGl, OutlinesAreSmooth) {
   const sim::Offscreen target(160, 120);
   renderer.draw(buffer, {&view, 1}, target.framebuffer());
   const auto bare = target.read();
-  const std::vector<float> values{0, 2};
-  renderer.paint({values, 0, 1, true}, target.framebuffer());
-  const auto painted = target.read();
-  int largest = 0, whole = 0;
-  for (int x = 1; x < 160; ++x) {
-    const auto here = colour(painted, x, 60), before = colour(painted, x - 1, 60);
-    const auto wall = colour(bare, x, 60), wall_before = colour(bare, x - 1, 60);
-    for (std::size_t c = 0; c < 3; ++c) {
-      largest = std::max(largest, std::abs((here[c] - wall[c]) - (before[c] - wall_before[c])));
-      whole = std::max(whole, std::abs(here[c] - wall[c]));
+  for (const bool classes : {true, false}) {
+    const std::vector<float> values{0, classes ? 0.0F : 1.0F};
+    renderer.draw(buffer, {&view, 1}, target.framebuffer());
+    renderer.paint({values, 0, 1, classes}, target.framebuffer());
+    const auto painted = target.read();
+    int largest = 0, whole = 0;
+    for (int x = 1; x < 160; ++x) {
+      const auto here = colour(painted, x, 60), before = colour(painted, x - 1, 60);
+      const auto wall = colour(bare, x, 60), wall_before = colour(bare, x - 1, 60);
+      for (std::size_t c = 0; c < 3; ++c) {
+        largest = std::max(largest, std::abs((here[c] - wall[c]) - (before[c] - wall_before[c])));
+        whole = std::max(whole, std::abs(here[c] - wall[c]));
+      }
     }
+    EXPECT_GT(whole, 60);
+    EXPECT_LT(largest, 0.75 * whole) << (classes ? "classes" : "scale");
   }
-  EXPECT_GT(whole, 60);
-  EXPECT_LT(largest, 0.75 * whole);
 }
 
 TEST_F(OverlayGl, RefusesAnEmptyRangeAndAMissingPicture) {
