@@ -98,10 +98,11 @@ TEST_F(LiveRatesE2e, TheyArePlayedWhereThatIsAcceptedAlsoByResumeAndCutWithTheir
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.err, Not(HasSubstr("measuring")));
   // The first showing may have reached its own cut in the frame in which it was stopped; it never counts.
-  EXPECT_EQ(count_in(database_,
-                     "SELECT count(*) FROM presentation JOIN showing USING (presentation_id) WHERE counts AND "
-                     "state = 'played' AND verdict = 'fail' AND reason LIKE 'cut %frames shown%'"),
-            1);
+  EXPECT_EQ(
+      count_in(database_,
+               "SELECT count(*) FROM presentation JOIN showing USING (presentation_id) WHERE counts AND "
+               "state = 'played' AND verdict = 'fail' AND reason LIKE 'cut %frames shown%'"),
+      1);
   EXPECT_EQ(count_in(database_,
                      "SELECT count(*) FROM response JOIN unit USING (unit_id) WHERE trial_id IS NOT NULL"),
             1);
