@@ -264,9 +264,10 @@ class Simulation {
   /// True if this run computes saliency from the picture passed to look(); if false, the caller need not read
   /// the picture back from the renderer.
   virtual bool follows_picture() const = 0;
-  /// True if a picture may depend on those drawn before it: while particles change levels, ellipsoids change
-  /// in steps between turns (libsim/surface). Then draw every frame, as a viewer sees it.
-  virtual bool picture_has_memory() const { return radii_m().size() > 1; }
+  /// True if every frame must be drawn, as a viewer sees it: the run follows pictures, or a picture depends
+  /// on those before it. The latter holds with levels, whose ellipsoids change in steps between turns
+  /// (libsim/surface).
+  bool needs_every_picture() const { return follows_picture() || radii_m().size() > 1; }
   /// Number of frames since the water's settling ended (frame 0), including SimulationOptions::start_frame.
   virtual int frame() const = 0;
   /// Simulated time since frame 0, s.

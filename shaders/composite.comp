@@ -131,11 +131,11 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
 // Mean of two steps of nearness, of those that count.
 float mean_step(vec2 steps, vec2 counts) { return dot(steps, counts) / max(counts.x + counts.y, 1.0); }
 
-// The normal of a pixel for shading, in eye space: that of the mean steps of nearness to the neighbours. Beside a jump
-// of depth it is the mean normal of the neighbours on the same layer, unless the mean steps are steeper: on water that
-// is seen at a slant, each particle is a ledge whose own normal faces the eye too much. Two normals are replaced: at
-// the picture's border, to which the depth filter reaches from one side only, by that of a pixel further inside; and
-// one that faces away from the eye, by the nearest that does not. `bend`: how far the normal turns from this pixel to
+// The normal of a pixel for shading, in eye space. It follows from the mean differences in nearness to the neighbours.
+// Beside a jump of depth it is the mean normal of the neighbours on the same layer. Water that is seen at a slant keeps
+// the steeper normal of the differences there, because each particle's own normal faces the eye too much. At the
+// picture's border the depth filter sees one side only, so the normal is that of a pixel further inside. A normal that
+// faces away from the eye is replaced by the nearest that does not. `bend`: how far the normal turns from this pixel to
 // the next.
 vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;

@@ -1,6 +1,6 @@
 // Light on the floor relative to that without water and obstacles. Sunlight is the product of the scene's picture
-// effects (shadows, caustics). Light of the sky is even; water above the floor absorbs it like sunlight. One invocation
-// per cell of the floor map.
+// effects (shadows, caustics). Light of the sky is even. The water above the floor absorbs both. One invocation per cell
+// of the floor map.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #ifdef SHADOWS

@@ -233,8 +233,7 @@ void print_stimuli(const CheckReport& report) {
   if (bakes) {
     std::printf(
         "to bake: vip-study bake --protocol FILE --out FOLDER --size WIDTHxHEIGHT%s, with the angle options "
-        "of "
-        "run; to use: run --stimulus FOLDER\n",
+        "of run; to use: run --stimulus FOLDER\n",
         study::varies_surface(report.protocol.design) ? " --keep pictures" : "");
   }
   const bool native = report.protocol.design.timing == TimingSource::Native;

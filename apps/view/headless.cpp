@@ -93,8 +93,7 @@ void print_timing(const Timing& timing, int frames, const PreparedFluid& prepare
 /// picture is stored, if the method reads every picture, if pictures depend on those before, or if --ptpe
 /// measures the frame rate in this frame.
 bool is_drawn(int frame, int frames, bool kept, const ViewOptions& options, const PreparedFluid& prepared) {
-  if (kept || options.png_folder.empty() || prepared.follows_picture) return true;
-  if (prepared.fluid->picture_has_memory()) return true;
+  if (kept || options.png_folder.empty() || prepared.fluid->needs_every_picture()) return true;
   return prepared.ptpe && (prepared.follows_rate || frame >= frames - last_frames);
 }
 

@@ -127,7 +127,7 @@ void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool
   fluid.synchronize();
   const double ms = base::milliseconds_now() - begin;
   fluid.frame_time(ms);
-  if (keep || fluid.follows_picture()) running.eye->draw(fluid);
+  if (keep || fluid.needs_every_picture()) running.eye->draw(fluid);
   if (keep) running.pictures.push_back(running.eye->picture());
   if (!counts) return;
   running.cost.particles += static_cast<double>(fluid.particle_count()) / runs.frames;

@@ -16,7 +16,7 @@ void Onlooker::step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wante
   look(fluid, gaze_m);
   const double start = base::milliseconds_now();
   fluid.step_frame();
-  if (wanted || fluid.follows_picture() || fluid.picture_has_memory()) draw(fluid);
+  if (wanted || fluid.needs_every_picture()) draw(fluid);
   fluid.synchronize();
   fluid.frame_time(base::milliseconds_now() - start);
 }

@@ -68,8 +68,8 @@ enum class Descent {
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature
 //   Swirl           rotation rate of the surrounding water, 1/s, last measured by the effect vorticity
-//   Drift           x, y, z: the velocity averaged over neighbours and over time, m/s; w: the largest recent
-//                   square of this average, m2/s2, averaged over neighbours too
+//   Drift           x, y, z: mean velocity of the water around the particle in the last substeps, m/s; w: the
+//                   largest recent squared speed of this mean, m2/s2
 #define SIM_COLUMNS(COLUMN, LIST)                                         \
   COLUMN(Position, position, Vec4, Core, Own)                             \
   COLUMN(Velocity, velocity, Vec4, Core, Own)                             \

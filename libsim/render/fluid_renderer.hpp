@@ -92,8 +92,8 @@ struct RenderOptions {
   int thickness_step = 2;
   /// Unit of the fixed-point thickness, m; a pixel saturates at 2^32 - 1 units.
   float thickness_unit_m = 1.0F / 65536;
-  /// Share of space filled by touching spheres in a cubic lattice (pi / 6). Drawn spheres are larger: the
-  /// path length through water is thickness / (packing * radius_scale^3).
+  /// Share of space that touching spheres fill in a cubic lattice: pi / 6. Drawn spheres have radius_scale
+  /// times that radius. So a ray's length in water is thickness / (packing * radius_scale^3).
   float packing = 0.5235988F;
   /// Footprints up to this many px per side are splatted by one invocation; 0: 16 on a GPU, 64 on software
   /// GL, but not more than group_px.

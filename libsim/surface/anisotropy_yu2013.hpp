@@ -212,7 +212,8 @@ SIM_FN Ellipsoid ellipsoid_of(const SurfaceRules& rules, const SurfaceMoments& s
   return {shift, water * square + (1 - water) * drop, r};
 }
 
-/// Share of the blend with the last picture that applies to a particle of radius r with this way in a frame.
+/// How much a particle of radius r blends with its last ellipsoid: 1 for a slow one, 0 for a fast one. `way`:
+/// its motion in one frame, m.
 SIM_FN float blend_share(const SurfaceRules& rules, float r, Vec3 way) {
   return 1 - smooth_rise(rules.slow, rules.fast, length(way) / r);
 }

@@ -247,8 +247,7 @@ std::string mend_of_choice(const TaskStudy& study, const TaskSelection& selectio
   std::vector<std::string> held;
   for (const TaskProtocol& protocol : study.protocols) held.push_back(name_of(protocol));
   return "give another database: this one holds " + base::joined(held) +
-         ", which vip-stats report describes, and "
-         "vip-stats study if its design has factors";
+         ", which vip-stats report describes, and vip-stats study if its design has factors";
 }
 
 stats::Refusal nothing_chosen(const TaskStudy& study, const std::string& protocol, std::string& mend) {

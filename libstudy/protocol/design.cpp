@@ -30,6 +30,17 @@ int track_count(const Design& design, const std::vector<int>& group) {
   return static_cast<int>(tracks.size());
 }
 
+/// True if `standard` is a standard, `cell` is none, and both have the same level of every factor that
+/// Design::standard does not name.
+bool is_compared_with(const Design& design, int cell, int standard) {
+  const Cell &a = design.cells[static_cast<std::size_t>(cell)],
+             &b = design.cells[static_cast<std::size_t>(standard)];
+  if (is_standard(design, a) || !is_standard(design, b)) return false;
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    if (!(*design.standard)[i] && a.levels[i] != b.levels[i]) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_standard(const Design& design, const Cell& cell) {
@@ -52,21 +63,6 @@ std::vector<std::vector<int>> cell_groups(const Design& design) {
   }
   return out;
 }
-
-namespace {
-
-/// True if `standard` is a standard, `cell` is none, and both have the same level of every factor that
-/// Design::standard does not name.
-bool is_compared_with(const Design& design, int cell, int standard) {
-  const Cell &a = design.cells[static_cast<std::size_t>(cell)],
-             &b = design.cells[static_cast<std::size_t>(standard)];
-  if (is_standard(design, a) || !is_standard(design, b)) return false;
-  for (std::size_t i = 0; i < design.factors.size(); ++i)
-    if (!(*design.standard)[i] && a.levels[i] != b.levels[i]) return false;
-  return true;
-}
-
-}  // namespace
 
 std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group) {
   std::vector<std::pair<int, int>> out;

@@ -75,8 +75,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "none: no effects. scene: those of the scene's file. Another name has a table [[design.effect_set]]"},
       {"stimulus", "surface", "text", in_quotes(surface_names()), "ellipsoids",
        "how the particles are drawn ([methods.md](methods.md#the-drawn-surface)). If written, the word "
-       "stands "
-       "beside the method in reports and files"},
+       "stands beside the method in reports and files"},
       {"stimulus", "timing", "table", "", where_needed, "how long each frame stays on"},
 
       {"stimulus.timing", "profile", "text", "\"moments\", \"hitches\", \"floor\", \"trace\"", "",
@@ -191,8 +190,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "drawn for each participant"},
 
       {"design.standard", "FACTOR", "text", "", "that of the comparison",
-       "a level of a within-subject factor. Name at least one factor. With `[procedure]`, name its factor "
-       "too"},
+       "a level of a within-subject factor. Name at least one factor. With `[procedure]`, name its "
+       "factor too"},
 
       {"design.moments", "scene", "text", "", "", "as in design.scene"},
       {"design.moments", "method", "text", "", "", "as in design.method"},

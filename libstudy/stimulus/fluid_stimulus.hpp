@@ -101,10 +101,8 @@ class LiveFluid final : public Stimulus {
   /// How often each of the solver's safety rules, such as the speed limit, intervened in all frames since the
   /// stimulus was made, including frames before a rewind.
   const sim::GuardCounts& guards() const { return guards_; }
-  /// True if every frame must be drawn: the method uses the last picture, or pictures depend on those before.
-  bool needs_every_picture() const {
-    return simulation_ && (simulation_->follows_picture() || simulation_->picture_has_memory());
-  }
+  /// Simulation::needs_every_picture(); false before start().
+  bool needs_every_picture() const { return simulation_ && simulation_->needs_every_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
   /// Pass times of the last picture; empty unless the render options ask for them (FluidRenderer::times).

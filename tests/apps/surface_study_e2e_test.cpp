@@ -1,4 +1,4 @@
-/// The study of protocols/surface.toml, shortened: bakes of both surfaces, sessions, bundle and report.
+/// A shortened study of protocols/surface.toml, from the bakes of both surfaces to the report.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

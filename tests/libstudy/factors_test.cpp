@@ -25,6 +25,7 @@
 #include "tests/libstudy/session_fixture.hpp"
 
 using namespace study;
+using study::test::error_of_protocol;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -39,15 +40,6 @@ std::string changed(std::string text, const std::string& from, const std::string
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
-}
-
-std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 }  // namespace
@@ -161,8 +153,8 @@ TEST(Factors, ABreakFollowsEverySoManyTrials) {
     trials += unit.trial.has_value();
   }
   EXPECT_THAT(before, ElementsAre(25, 50)) << "of 60 trials";
-  EXPECT_THAT(error_of(changed(hitches_text, every, "")), HasSubstr("add break_every"));
-  EXPECT_THAT(error_of(changed(hitches_text, every, "break_every = 60")),
+  EXPECT_THAT(error_of_protocol(changed(hitches_text, every, "")), HasSubstr("add break_every"));
+  EXPECT_THAT(error_of_protocol(changed(hitches_text, every, "break_every = 60")),
               HasSubstr("makes no break: a participant has 60 trials"));
 }
 
@@ -186,7 +178,7 @@ TEST(Factors, OrderMayKeepLevelsApart) {
       changed(changed(changed(hitches_text, "vary = \"between\"", "vary = \"within\""), "[design]",
                       cells + "[design]"),
               "order = \"shuffle\"", "order = \"constrained\"\nnever_adjacent = [\"content\"]");
-  EXPECT_THAT(error_of(apart), HasSubstr("40 of 70 trials have dam"));
+  EXPECT_THAT(error_of_protocol(apart), HasSubstr("40 of 70 trials have dam"));
   const std::string once = changed(apart, "repetitions = 10", "repetitions = 1");
   make_plan(read(changed(once, "break_every = 20", "break_every = 5")), "P01", 1, 0);
 }
@@ -219,14 +211,15 @@ TEST(Factors, RefuseWhatTheyDoNotUnderstand) {
   for (const auto& one : cases) {
     std::string text = changed(hitches_text, one.from, one.to);
     if (one.words == "real_time") text = changed(text, "mode = \"real_time\"", "mode = \"per_frame\"");
-    const std::string error = error_of(text);
+    const std::string error = error_of_protocol(text);
     EXPECT_THAT(error, HasSubstr(one.words)) << one.to;
     EXPECT_THAT(error, HasSubstr("own.toml:")) << one.to;
     EXPECT_THAT(error, HasSubstr("mend: ")) << one.to;
   }
-  EXPECT_THAT(error_of(changed(twin_text, "standard = {frames = \"even\"}", "standard = {frames = \"odd\"}")),
+  EXPECT_THAT(error_of_protocol(
+                  changed(twin_text, "standard = {frames = \"even\"}", "standard = {frames = \"odd\"}")),
               HasSubstr("is no level of this factor"));
-  EXPECT_THAT(error_of(changed(hitches_text, "format = 3", "format = 4")), HasSubstr("2 and 3"));
+  EXPECT_THAT(error_of_protocol(changed(hitches_text, "format = 3", "format = 4")), HasSubstr("2 and 3"));
 }
 
 TEST(Factors, ShorterTrialsKeepTheProfile) {

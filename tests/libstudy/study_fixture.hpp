@@ -9,6 +9,7 @@
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/store.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/protocols.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -18,6 +19,16 @@ namespace study::test {
 using namespace ::test;
 
 inline std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1u << 30); }
+
+/// The error of this protocol's text, read as own.toml; "no error" if it is accepted.
+inline std::string error_of_protocol(const std::string& text) {
+  try {
+    parse_protocol(text, "own.toml");
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
 
 inline Protocol pilot() { return read_protocol(base::resource("protocols/ptpe_pilot.toml")); }
 

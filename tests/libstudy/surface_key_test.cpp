@@ -9,26 +9,18 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/inference/power.hpp"
-#include "tests/common/protocols.hpp"
+#include "tests/libstudy/study_fixture.hpp"
 
 using namespace study;
-using ::test::replaced;
-using ::test::shipped_text;
+using study::test::error_of_protocol;
+using study::test::replaced;
+using study::test::shipped_text;
 using testing::AllOf;
 using testing::HasSubstr;
 
 namespace {
 
 Protocol read(const std::string& text) { return parse_protocol(text, "own.toml"); }
-
-std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const base::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 }  // namespace
 
@@ -48,16 +40,18 @@ TEST(SurfaceKey, StandsInTheStimulusOrInTheLevelsOfAFactor) {
 TEST(SurfaceKey, IsRefusedWithPlaceAndMend) {
   const std::string text = shipped_text("surface");
   EXPECT_THAT(
-      error_of(replaced(text, "surface = \"spheres\"\n\n[[factor.level]]",
-                        "surface = \"balls\"\n\n[[factor.level]]")),
+      error_of_protocol(replaced(text, "surface = \"spheres\"\n\n[[factor.level]]",
+                                 "surface = \"balls\"\n\n[[factor.level]]")),
       AllOf(HasSubstr("own.toml:"), HasSubstr("\"balls\""), HasSubstr("ellipsoids"), HasSubstr("mend: ")));
-  EXPECT_THAT(error_of(replaced(text, "surface = \"ellipsoids\"\n", "")),
+  EXPECT_THAT(error_of_protocol(replaced(text, "surface = \"ellipsoids\"\n", "")),
               HasSubstr("sets other keys than the first level"));
-  EXPECT_THAT(error_of(replaced(text, "method = \"Ours\"", "method = \"Ours\"\nsurface = \"spheres\"")),
-              HasSubstr("sets other keys than the first level"));
+  EXPECT_THAT(
+      error_of_protocol(replaced(text, "method = \"Ours\"", "method = \"Ours\"\nsurface = \"spheres\"")),
+      HasSubstr("sets other keys than the first level"));
   // Format 2 has no such factor.
-  EXPECT_THAT(error_of(replaced(shipped_text("task2"), "groups = 1", "groups = 1\nsurface = \"spheres\"")),
-              HasSubstr("'design.surface' is not a known key"));
+  EXPECT_THAT(
+      error_of_protocol(replaced(shipped_text("task2"), "groups = 1", "groups = 1\nsurface = \"spheres\"")),
+      HasSubstr("'design.surface' is not a known key"));
 }
 
 TEST(Standards, OfSomeFactorsHaveTheComparisonsLevelsOfTheOthers) {
@@ -92,11 +86,12 @@ TEST(Standards, OfSomeFactorsHaveTheComparisonsLevelsOfTheOthers) {
 
 TEST(Standards, NeedAComparisonAndALevel) {
   const std::string text = shipped_text("surface"), standard = "standard = {surface = \"spheres\"}";
-  EXPECT_THAT(error_of(replaced(text, standard, "standard = {}")), HasSubstr("names no level"));
-  EXPECT_THAT(error_of(replaced(text, standard, "standard = {surfaces = \"spheres\"}")),
+  EXPECT_THAT(error_of_protocol(replaced(text, standard, "standard = {}")), HasSubstr("names no level"));
+  EXPECT_THAT(error_of_protocol(replaced(text, standard, "standard = {surfaces = \"spheres\"}")),
               HasSubstr("names no level"));
-  EXPECT_THAT(error_of(replaced(text, standard, "standard = {surface = \"spheres\", metod = \"Ours\"}")),
-              HasSubstr("metod"));
+  EXPECT_THAT(
+      error_of_protocol(replaced(text, standard, "standard = {surface = \"spheres\", metod = \"Ours\"}")),
+      HasSubstr("metod"));
   const std::string three = R"([[combination]]
 surface = "spheres"
 method = "HiRes"
@@ -116,17 +111,18 @@ scene = "jet_impact"
 
 [design])";
   EXPECT_THAT(
-      error_of(replaced(text, "[design]", three)),
+      error_of_protocol(replaced(text, "[design]", three)),
       AllOf(HasSubstr("has no cell for the comparison with surface ellipsoids, method Ours, scene faucet"),
             HasSubstr("mend: ")));
   // The level of a procedure may not turn the standard.
-  EXPECT_THAT(error_of(replaced(replaced(shipped_text("hitch_quest"), "[design]",
-                                         "[design]\npairs = true\nstandard = "
-                                         "{look = \"old\"}"),
-                                "[[factor]]",
-                                "[[factor]]\nname = \"look\"\nvary = \"within\"\n[[factor.level]]\nname = "
-                                "\"old\"\nsurface = \"spheres\"\n[[factor.level]]\nname = \"new\"\nsurface = "
-                                "\"ellipsoids\"\n\n[[factor]]")),
+  EXPECT_THAT(error_of_protocol(
+                  replaced(replaced(shipped_text("hitch_quest"), "[design]",
+                                    "[design]\npairs = true\nstandard = "
+                                    "{look = \"old\"}"),
+                           "[[factor]]",
+                           "[[factor]]\nname = \"look\"\nvary = \"within\"\n[[factor.level]]\nname = "
+                           "\"old\"\nsurface = \"spheres\"\n[[factor.level]]\nname = \"new\"\nsurface = "
+                           "\"ellipsoids\"\n\n[[factor]]")),
               HasSubstr("has no level in standard"));
 }
 

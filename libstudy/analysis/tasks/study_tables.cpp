@@ -105,10 +105,6 @@ std::string value_words(const Design& design, const Question& question) {
   return score ? "share of \"" + score_words(question, *score) + "\"" : "counts of choices";
 }
 
-}  // namespace
-
-namespace {
-
 /// The level of the factor that sets the surface, such as "surface spheres"; empty if all cells with this
 /// surface do not share the level of a factor that other cells lack.
 std::string level_of_surface(const Design& design, const std::string& surface) {
@@ -123,7 +119,8 @@ std::string level_of_surface(const Design& design, const std::string& surface) {
   return "";
 }
 
-/// By surface that the protocol names, the level that sets it; empty where the protocol names none.
+/// The surfaces that the protocol names, each with the level of the factor that sets it. Empty if the
+/// protocol names no surface.
 Json surfaces_json(const Design& design) {
   std::set<std::string> surfaces;
   for (const Cell& cell : design.cells)

@@ -85,8 +85,8 @@ std::string picture_words(const sim::BakeHeader& header) {
   return words.empty() ? "no effects of the picture" : words;
 }
 
-/// Differences between the surfaces of the drawn pictures. A bake that records none was drawn as ellipsoids,
-/// or as spheres by a version before ellipsoids; it will do where no surface is wanted.
+/// Adds a departure if the bake's pictures show another surface than wanted. Some bakes record no surface:
+/// they show ellipsoids, or spheres if an older version made them. They are accepted if no surface is wanted.
 void add_surface(Departures& out, const sim::BakeHeader& bake, const sim::BakedView& wanted) {
   const sim::BakedView& found = bake.view;
   if (!found.drawn() || !wanted.drawn()) return;

@@ -24,7 +24,7 @@ struct Water {
   Array<int> id;
   std::vector<Vec4> places;
   Domain tank{{-5, -5, -5}, {5, 5, 5}};
-  bool lid = true, blends = false;
+  bool lid = true;
   int most_ids = 4000;
 
   Drawn draw(Ellipsoids& by, const std::vector<Vec4>& at, const std::vector<int>& ids = {}, int frame = 0,
