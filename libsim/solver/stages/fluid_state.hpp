@@ -295,6 +295,13 @@ struct FluidState {
     return calm_below(share * saliency.readings.calm_speed, static_cast<double>(parameters.gravity.strength),
                       static_cast<double>(finest_support) / 2);
   }
+  /// Degree of rest of water with levels by the mean motion of its surroundings (the column Drift), with
+  /// `share` times that motion's limit speed (docs/decisions.md, "Boiling and waves").
+  Calm drift_calm(double share) const {
+    return calm_below(share * 0.45 * static_cast<double>(parameters.still_speed),
+                      static_cast<double>(parameters.gravity.strength),
+                      static_cast<double>(finest_support) / 2);
+  }
   Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };
 

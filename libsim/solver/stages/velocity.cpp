@@ -64,9 +64,6 @@ using VelocityColumns =
 /// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
 /// size").
 constexpr double short_from = 800;
-/// Limit speed for the mean motion of water at rest with levels, as a share of the limit speed for a particle
-/// of water without levels (docs/decisions.md, "Boiling and waves").
-constexpr double drift_share = 0.45;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
@@ -78,8 +75,7 @@ void run_velocity(FluidState& state, VelocityColumns p) {
   const double shorter =
       gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
   const bool drifts = p.has(Column::Drift) && !state.one_level;
-  const double still_speed =
-      static_cast<double>(k.still_speed) * (drifts ? drift_share : std::pow(std::max(1.0, shorter), 0.25));
+  const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);
   // PredictedNext stores the velocity changes, because its positions are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -92,7 +88,9 @@ void run_velocity(FluidState& state, VelocityColumns p) {
                    .brake = state.brake(p.id(), 1),
                    .dt = k.dt,
                    .drift = drifts ? p.drift() : nullptr,
-                   .still = calm_below(still_speed, gravity, static_cast<double>(state.finest_support) / 2),
+                   .still = drifts ? state.drift_calm(1)
+                                   : calm_below(still_speed, gravity,
+                                                static_cast<double>(state.finest_support) / 2),
                    .finest_support = state.finest_support,
                    .before_kicks = shorter > 1});
 }

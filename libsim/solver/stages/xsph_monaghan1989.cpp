@@ -16,6 +16,9 @@ struct DriftAverage {
   float mixed;     ///< share of the difference to neighbours that one substep removes from the average
   float followed;  ///< share of the difference to the velocity that one substep removes
   float kept;      ///< share of the largest recent square that remains after one substep
+  /// Square of the speed from which a particle's average does not mix with its neighbours', m2/s2. Such water
+  /// is far from still whatever its neighbours do, and the sum over them takes time.
+  float fast;
 
   /// The average after a substep. mean: the average before, mixed with that of neighbours. An average that is
   /// not finite begins anew at 0, else it would spread to all water.
@@ -96,8 +99,9 @@ struct Xsph {
     Vec4 drift{};    ///< only with a filter
   };
 
-  /// Adds particle j to the change of velocity and, with a filter, to the change d of the average Drift; a
+  /// Adds particle j to the change of velocity and, if Mixes, to the change d of the average Drift; a
   /// separate function, so that the loop vectorises (SIM_LANES).
+  template <bool Mixes>
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz, float& dx, float& dy, float& dz,
                   float& dw) const {
     const Vec4 other = position[j];
@@ -117,6 +121,8 @@ struct Xsph {
       vx += share * (kick.x - me.kick.x);
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
+    }
+    if constexpr (Mixes) {
       const Vec4 drift = filter.average.drift[j];
       dx += weight * (drift.x - me.drift.x);
       dy += weight * (drift.y - me.drift.y);
@@ -157,16 +163,23 @@ struct Xsph {
     float dw = 0;
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
+    bool mixes = false;
     if constexpr (Filter::filters) {
-      SIM_LANES(vx, vy, vz, dx, dy, dz, dw)
-      for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz, dx, dy, dz, dw);
-      dx = team.sum(dx);
-      dy = team.sum(dy);
-      dz = team.sum(dz);
-      dw = team.sum(dw);
-    } else {
+      mixes = me.drift.w < filter.average.fast;
+      if (mixes) {
+        SIM_LANES(vx, vy, vz, dx, dy, dz, dw)
+        for (int k = team.rank(); k < count; k += Team::size)
+          add<true>(run[k], me, vx, vy, vz, dx, dy, dz, dw);
+        dx = team.sum(dx);
+        dy = team.sum(dy);
+        dz = team.sum(dz);
+        dw = team.sum(dw);
+      }
+    }
+    if (!mixes) {
       SIM_LANES(vx, vy, vz)
-      for (int k = team.rank(); k < count; k += Team::size) add(run[k], me, vx, vy, vz, dx, dy, dz, dw);
+      for (int k = team.rank(); k < count; k += Team::size)
+        add<false>(run[k], me, vx, vy, vz, dx, dy, dz, dw);
     }
     vx = team.sum(vx);
     vy = team.sum(vy);
@@ -227,6 +240,9 @@ struct DriftTimes {
   static constexpr double follow = 2.5, keep = 12, mix = 0.05;
 };
 
+/// Speed from which an average does not mix with its neighbours', in limit speeds of water at rest.
+constexpr double fast_from = 4;
+
 /// The share dt / time of a substep, at most 1; 0 without gravity, where no water counts as at rest.
 float share_of(const FluidState& state, double time) {
   const double g = static_cast<double>(state.parameters.gravity.strength);
@@ -238,6 +254,7 @@ float share_of(const FluidState& state, double time) {
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
   const Calm calm = state.calm(1);
+  const Calm fast = state.drift_calm(fast_from);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
                              .ease = p.ease(),
@@ -249,7 +266,8 @@ void run_levels(FluidState& state, LevelsView p) {
                                          .next = p.normal(),
                                          .mixed = share_of(state, DriftTimes::mix),
                                          .followed = share_of(state, DriftTimes::follow),
-                                         .kept = 1 - share_of(state, DriftTimes::keep)}});
+                                         .kept = 1 - share_of(state, DriftTimes::keep),
+                                         .fast = fast.most > 0 ? 1 / fast.inverse_square : 0}});
   p.swap<Column::Drift, Column::Normal>();
 }
 
