@@ -149,6 +149,11 @@ bool launches_overlap();
 /// Number of lanes that should share each of n indices: the fastest number for the solver's passes over
 /// neighbours, as measured on an H200.
 int team_wish(int n);
+/// Half as many, at least one: fastest for density and displacement of particles of several levels.
+inline int half_team_wish(int n) {
+  const int half = team_wish(n) / 2;
+  return half > 0 ? half : 1;
+}
 
 /// Launches `kernel` after the previous launch. If the device supports it, the kernel's blocks start while
 /// the last blocks of the previous launch end. They wait in begin_kernel(), which each kernel must call

@@ -83,9 +83,10 @@ SIM_FN Vec3 parting_direction(int id_i, int id_j) {
 }
 
 /// Before a loop over neighbours: runs it in SIMD lanes on the CPU and sums the named variables. The loop
-/// body must be one call; constructing structs in it prevents vectorisation.
+/// body must be one call; constructing structs in it prevents vectorisation. On the GPU a thread loads four
+/// neighbours at a time, so that their loads overlap.
 #ifdef SIM_CUDA
-#define SIM_LANES(...)
+#define SIM_LANES(...) _Pragma("unroll 4")
 #else
 #define SIM_LANES_TEXT(text) _Pragma(#text)
 #define SIM_LANES(...) SIM_LANES_TEXT(omp simd reduction(+ : __VA_ARGS__))

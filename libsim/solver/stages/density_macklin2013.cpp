@@ -22,6 +22,10 @@ struct Density {
   Guards* guards;
   float rest_density, relaxation;
 
+#ifdef SIM_CUDA
+  int lanes(int n) const { return OneLevel ? team_wish(n) : half_team_wish(n); }
+#endif
+
   /// Adds particle j to the sums; a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& rho, float& gx, float& gy,
                   float& gz, float& squares, int& zero) const {

@@ -20,6 +20,10 @@ struct Displace {
   int half;  ///< time of this pass, in half substeps since the frame's start (TroubleKey::of)
   float rest_density, tensile, wall_gap, momentum;
 
+#ifdef SIM_CUDA
+  int lanes(int n) const { return OneLevel ? team_wish(n) : half_team_wish(n); }
+#endif
+
   /// Adds particle j to the step; a separate function, so that the loop vectorises (SIM_LANES). own: lambda
   /// of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
