@@ -11,7 +11,7 @@ layout(std430, binding = 0) readonly buffer Shadow { vec2 shadow[]; };
 layout(std430, binding = 1) readonly buffer Caustic { uint caustic[]; };
 #endif
 layout(local_size_x = 16, local_size_y = 8) in;
-layout(rgba16f, binding = 0) writeonly uniform image2D floor_light;
+layout(CELLS, binding = 0) writeonly uniform image2D floor_light;
 
 const float sun_share = 0.7;  // share of the floor's light from the sun; the rest is from the sky
 

@@ -23,7 +23,7 @@ constexpr float smoothing_r =
 constexpr float surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
 
 // Where only [light] asks for a shadow, the maps are coarser and the shadow softer.
-constexpr int soft_cells = 128;
+constexpr int soft_cells = 64;
 constexpr float soft_surface_cell_in_cells = 1.5F;
 constexpr float soft_strength = 0.7F;
 
@@ -95,9 +95,12 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
     caustic_.reserve(4 * size_of(floor_x, floor_z));
     effects += "#define CAUSTICS\n";
   }
+  // Caustics are brighter than 1; a shadow alone is not, and software OpenGL reads bytes faster.
+  format_ = listed ? GL_RGBA16F : GL_RGBA8;
+  effects += listed ? "#define CELLS rgba16f\n" : "#define CELLS rgba8\n";
   join_ = compute_program("light_floor.comp", effects.c_str());
   glCreateTextures(GL_TEXTURE_2D, 1, &sunlight_);
-  glTextureStorage2D(sunlight_, levels_of(std::max(floor_x, floor_z)), GL_RGBA16F, floor_x, floor_z);
+  glTextureStorage2D(sunlight_, levels_of(std::max(floor_x, floor_z)), format_, floor_x, floor_z);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTextureParameteri(sunlight_, axis, GL_CLAMP_TO_EDGE);
   glTextureParameteri(sunlight_, GL_TEXTURE_MIN_FILTER,
@@ -158,7 +161,7 @@ void FloorLight::gather_caustics(const FloorWater& water) {
 void FloorLight::join() {
   join_.use();
   bind_storage({shadow_.name(), caustic_.name()});
-  glBindImageTexture(0, sunlight_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(0, sunlight_, 0, GL_FALSE, 0, GL_WRITE_ONLY, format_);
   dispatch_pixels(block_.cells[2], block_.cells[3]);
   glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);

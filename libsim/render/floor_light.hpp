@@ -62,6 +62,7 @@ class FloorLight {
   GlBuffer surface_a_, surface_b_;        // both surfaces joined; a: smoothed along x, b: also along z
   GlBuffer shadow_, caustic_;             // floor maps of the effects that the scene lists
   unsigned sunlight_ = 0;                 // texture of the combined floor maps
+  unsigned format_ = 0;                   // of its cells
 };
 
 }  // namespace sim
