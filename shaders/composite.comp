@@ -25,6 +25,7 @@ const float most_bend = 0.35;                         // of a normal within a pi
 const float thin_m = 0.01;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
 const int most_steps = 8;        // of such a ray
+const float least_turn = 0.15;   // cosine at the surface below which a mirrored ray passes the water's rim
 const float first_step_r = 3.0, step_growth = 1.6;
 
 float water_length(vec2 xy) {
@@ -61,27 +62,28 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
 }
 
 // Light that the surface with the normal n mirrors into the eye's ray d. A ray that is mirrored downwards meets water
-// again: its light is that of the direction mirrored once more, less what the water takes. Two kinds of rays do not:
-// upright water at the near glass mirrors the ground, and a ray that hardly turns passes the water's rim.
+// again: its light is that of the direction mirrored once more, less what the water takes, which is more where it falls
+// more steeply. Two kinds of rays do not: upright water at the near glass mirrors the ground, and a ray that hardly
+// turns passes the water's rim, and then also obstacles beyond the rim.
 vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float share, float radius, float width_per_m) {
-  vec3 mirrored = reflect(d, n);
+  const vec3 mirrored = reflect(d, n);
+  const float turns = smoothstep(least_turn, 2.0 * least_turn, -dot(d, n));
+  const float down = at_glass && abs(n.y) < 0.1 ? 0.0 : smoothstep(0.0, 0.2, -mirrored.y);
+  const float passes = down * (1.0 - turns);
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
-  if (met.at < never) return obstacle_light(met);
+  if (met.at < (passes > 0.5 ? first_step_r * radius : never)) return obstacle_light(met);
 #endif
-  const bool upright = at_glass && abs(n.y) < 0.1, turns = dot(d, n) < -0.15;
-  if (mirrored.y < 0.0 && !upright && !turns) mirrored = d;
-  const bool again = mirrored.y < 0.0 && !upright && turns;
-  const float kept = again ? 0.5 : 1.0;
-  const vec3 up = upright || !turns ? mirrored : normalize(vec3(mirrored.x, max(abs(mirrored.y), 0.02), mirrored.z));
+  vec3 up = mirrored;
+  if (down > 0.0) up = normalize(mix(vec3(mirrored.x, -mirrored.y, mirrored.z), d, passes));
   vec3 light = surroundings(position, up, width_per_m, 0.0);
   light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
-  if (share > least_share && turns) {
+  if (share > least_share && turns > 0.0) {
     vec2 ahead = water_ahead(position, mirrored, radius);
-    ahead.x *= smoothstep(least_share, 2.0 * least_share, share);
+    ahead.x *= turns * smoothstep(least_share, 2.0 * least_share, share);
     light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
   }
-  return kept * light;
+  return (1.0 - 0.5 * down * turns) * light;
 }
 
 // A ray that goes on behind the surface, and what becomes of its light on the way to the eye: light * kept + added.
@@ -92,8 +94,9 @@ struct Behind {
 };
 
 // The way of the eye's ray d through the water. `bend`: how far the normal n turns within the pixel; the footprint
-// widens by the angle by which refraction then spreads the rays. `length_m`: of the water along d; `wall_m`: way along
-// d to the tank's wall or an obstacle.
+// widens by the angle by which refraction then spreads the rays. Where the normal turns within one particle, light is
+// spread as by an unknown back: the surface is not known that finely, and would bend lines of the ground to loops.
+// `length_m`: of the water along d; `wall_m`: way along d to the tank's wall or an obstacle.
 Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float wall_m, float radius,
                  float footprint_per_m, float distance_m) {
   const vec3 inside = refract(d, n, into_water);
@@ -120,8 +123,9 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
     through += min(behind.from.y / max(-inside.y, 0.05), way);
   }
   behind.framed = smoothstep(0.5, 0.9, to_wall);
+  const float unknown = smoothstep(0.2, 0.6, bend * radius / (footprint_per_m * distance_m));
   behind.footprint_per_m = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop) +
-                           back_spread * (1.0 - behind.framed);
+                           back_spread * max(1.0 - behind.framed, unknown);
   behind.travelled = footprint_per_m / behind.footprint_per_m * distance_m + way;
   behind.kept = exp(-absorption.rgb * through);
   behind.added = in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
@@ -165,7 +169,10 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const ivec2 inner = clamp(pixel, min(border, size.xy / 2), max(size.xy - 1 - border, size.xy / 2));
   if (inner != pixel) {
     const int there = inner.y * size.x + inner.x;
-    if (nearness[there] > 0.0 && abs(nearness[there] - centre) < 2.0 * reach) n = normals[there].xyz;
+    if (nearness[there] > 0.0 && abs(nearness[there] - centre) < 2.0 * reach) {
+      n = normals[there].xyz;
+      bend = 0.0;
+    }
   }
   const vec3 away = ray / length(ray);
   return normalize(n - max(dot(n, away) + 0.03, 0.0) * away);
@@ -173,13 +180,14 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
 
 // The normal of water that lies against the near side of the tank, in world space. The depth filter rounds off the
 // edge between this water and the water's surface, so at the glass the glass's normal is taken. From one particle
-// radius behind the glass on, the water's own normal n is taken.
-vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius) {
+// radius behind the glass on, the water's own normal n is taken. `bend`: as in shading_normal(); none at the glass.
+vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius, inout float bend) {
   if (tank.w == 0.0 || c.enter <= 0.0 || (c.enter_axis == 1 && (d.y > 0.0 || absorption.w == 0.0))) return n;
   const float towards = d[c.enter_axis];
   vec3 glass = vec3(0.0);
   glass[c.enter_axis] = -sign(towards);
   const float behind = (distance_m - c.enter) * abs(towards);
+  bend *= smoothstep(1.0, 3.0, behind / radius);
   return normalize(mix(glass, n, smoothstep(0.1, 1.0, behind / radius) + 1e-4));
 }
 
@@ -239,7 +247,7 @@ void main() {
     const float radius = max(normals[at].w * origin.w, 1e-4), distance_m = per_depth / nearness[at];
     float bend;
     const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray, bend);
-    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, radius);
+    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, radius, bend);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
