@@ -25,7 +25,7 @@ const float most_bend = 0.35;                         // of a normal within a pi
 const float thin_m = 0.01;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
 const int most_steps = 8;        // of such a ray
-const float least_turn = 0.15;   // cosine at the surface below which a mirrored ray passes the water's rim
+const float least_turn = 0.15;   // cosine at the surface of a mirrored ray that hardly turns
 const float first_step_r = 3.0, step_growth = 1.6;
 
 float water_length(vec2 xy) {
@@ -63,19 +63,18 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
 
 // Light that the surface with the normal n mirrors into the eye's ray d. A ray that is mirrored downwards meets water
 // again: its light is that of the direction mirrored once more, less what the water takes, which is more where it falls
-// more steeply. Two kinds of rays do not: upright water at the near glass mirrors the ground, and a ray that hardly
-// turns passes the water's rim, and then also obstacles beyond the rim.
-vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float share, float radius, float width_per_m) {
+// more steeply. Upright water at the near glass mirrors the ground instead. A ray that falls and hardly turns goes into
+// the water below a rim: `share`, of the mirrored light, decreases to 0.
+vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float radius, float width_per_m, inout float share) {
   const vec3 mirrored = reflect(d, n);
   const float turns = smoothstep(least_turn, 2.0 * least_turn, -dot(d, n));
   const float down = at_glass && abs(n.y) < 0.1 ? 0.0 : smoothstep(0.0, 0.2, -mirrored.y);
-  const float passes = down * (1.0 - turns);
+  share *= 1.0 - down * (1.0 - turns);
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
-  if (met.at < (passes > 0.5 ? first_step_r * radius : never)) return obstacle_light(met);
+  if (met.at < never) return obstacle_light(met);
 #endif
-  vec3 up = mirrored;
-  if (down > 0.0) up = normalize(mix(vec3(mirrored.x, -mirrored.y, mirrored.z), d, passes));
+  const vec3 up = down > 0.0 ? vec3(mirrored.x, -mirrored.y, mirrored.z) : mirrored;
   vec3 light = surroundings(position, up, width_per_m, 0.0);
   light += vec3(1.0, 0.93, 0.8) * (9.0 * pow(max(dot(mirrored, sun), 0.0), 600.0));
   if (share > least_share && turns > 0.0) {
@@ -83,7 +82,7 @@ vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float share, f
     ahead.x *= turns * smoothstep(least_share, 2.0 * least_share, share);
     light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
   }
-  return (1.0 - 0.5 * down * turns) * light;
+  return (1.0 - 0.5 * down) * light;
 }
 
 // A ray that goes on behind the surface, and what becomes of its light on the way to the eye: light * kept + added.
@@ -153,7 +152,9 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const vec3 slanted = normalize(vec3(-by_slope, centre - dot(by_slope, ray.xy)));
   vec3 n = normals[at].xyz;
   if (all(lessThan(abs(steps), vec4(reach)))) {
-    bend = min(0.7 * length(normals[high.y * size.x + high.x].xyz - n), most_bend);
+    const int apart = int(clamp(0.25 * radius * centre / rays.x, 1.0, 8.0));
+    const ivec2 aside = min(pixel + apart, size.xy - 1);
+    bend = min(0.7 / float(apart) * length(normals[aside.y * size.x + aside.x].xyz - n), most_bend);
     n = slanted;
   } else {
     bend = most_bend;
@@ -252,7 +253,7 @@ void main() {
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
     const bool at_glass = distance_m - crossing.enter < radius;
-    mirrored = mirrored_light(position, d, n, at_glass, share, radius, footprint_per_m + 2.0 * bend);
+    mirrored = mirrored_light(position, d, n, at_glass, radius, footprint_per_m + 2.0 * bend, share);
     float wall_at = crossing.leave;
 #ifdef OBSTACLES
     wall_at = min(wall_at, obstacle_at);
