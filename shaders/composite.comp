@@ -63,13 +63,13 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
 
 // Light that the surface with the normal n mirrors into the eye's ray d. A ray that is mirrored downwards meets water
 // again: its light is that of the direction mirrored once more, less what the water takes, which is more where it falls
-// more steeply. Upright water at the near glass mirrors the ground instead. A ray that falls and hardly turns goes into
-// the water below a rim: `share`, of the mirrored light, decreases to 0.
+// more steeply. Upright water at the near glass mirrors the ground instead. A falling ray that hardly turns, and falls
+// on, goes into the water below a rim: `share`, of the mirrored light, decreases to 0.
 vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float radius, float width_per_m, inout float share) {
   const vec3 mirrored = reflect(d, n);
   const float turns = smoothstep(least_turn, 2.0 * least_turn, -dot(d, n));
   const float down = at_glass && abs(n.y) < 0.1 ? 0.0 : smoothstep(0.0, 0.2, -mirrored.y);
-  share *= 1.0 - down * (1.0 - turns);
+  share *= 1.0 - down * (1.0 - turns) * smoothstep(0.0, 0.1, -d.y);
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(position, mirrored);
   if (met.at < never) return obstacle_light(met);
@@ -82,7 +82,7 @@ vec3 mirrored_light(vec3 position, vec3 d, vec3 n, bool at_glass, float radius, 
     ahead.x *= turns * smoothstep(least_share, 2.0 * least_share, share);
     light = mix(light, light * exp(-absorption.rgb * ahead.y) + in_scatter * (1.0 - exp(-0.25 * ahead.y)), ahead.x);
   }
-  return (1.0 - 0.5 * down) * light;
+  return (1.0 - 0.5 * down * turns) * light;
 }
 
 // A ray that goes on behind the surface, and what becomes of its light on the way to the eye: light * kept + added.
