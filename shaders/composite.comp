@@ -192,6 +192,15 @@ vec3 flat_at_glass(vec3 n, Crossing c, vec3 d, float distance_m, float radius, i
   return normalize(mix(glass, n, smoothstep(0.1, 1.0, behind / radius) + 1e-4));
 }
 
+// The normal of a surface that meets the tank's walls, in world space: at a wall it has no part across the wall, since
+// the wall mirrors the water. From one splatted radius off the wall on, and on steep water, it is n.
+vec3 level_at_walls(vec3 n, vec3 position, float radius) {
+  if (tank.w == 0.0) return n;
+  const vec2 away = min(position.xz, tank.xz - position.xz) / radius;
+  n.xz *= mix(vec2(1.0), smoothstep(0.0, 1.0, away), smoothstep(0.5, 0.8, n.y));
+  return normalize(n);
+}
+
 // Opacity of a fluid pixel whose particle is smaller than the pixel: its share of the pixel, and more where its
 // neighbours hold water too.
 float small_cover(ivec2 pixel, float nearness_here, float radius) {
@@ -248,8 +257,8 @@ void main() {
     const float radius = max(normals[at].w * origin.w, 1e-4), distance_m = per_depth / nearness[at];
     float bend;
     const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray, bend);
-    const vec3 n = flat_at_glass(smoothed, crossing, d, distance_m, radius, bend);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
+    const vec3 n = flat_at_glass(level_at_walls(smoothed, position, radius), crossing, d, distance_m, radius, bend);
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
     const bool at_glass = distance_m - crossing.enter < radius;
