@@ -24,9 +24,9 @@ const float most_steep = 3.0;   // smallest jump of depth that is no slanted sur
 const float most_bend = 0.35;                         // of a normal within a pixel, as a difference of unit vectors
 const float thin_m = 0.01;                          // thickness below which water reflects less, m
 const float least_share = 0.08;  // reflected share from which mirrored rays look for water in the picture
-const int most_steps = 8;        // of such a ray
+const int most_steps = 5;        // of such a ray
 const float least_turn = 0.15;   // cosine at the surface of a mirrored ray that hardly turns
-const float first_step_r = 3.0, step_growth = 1.6;
+const float first_step_r = 3.0, step_growth = 2.0;
 
 float water_length(vec2 xy) {
   const vec2 g = xy / thickness_rule.z - 0.5;
@@ -144,8 +144,8 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
   const float centre = nearness[at], radius = normals[at].w * origin.w, reach = 2.0 * radius * centre * centre;
   const ivec2 low = max(pixel - 1, ivec2(0)), high = min(pixel + 1, size.xy - 1);
   const int row = pixel.y * size.x;
-  const vec4 beside = vec4(nearness[row + low.x], nearness[row + high.x], nearness[low.y * size.x + pixel.x],
-                           nearness[high.y * size.x + pixel.x]);
+  const ivec4 there = ivec4(row + low.x, row + high.x, low.y * size.x + pixel.x, high.y * size.x + pixel.x);
+  const vec4 beside = vec4(nearness[there.x], nearness[there.y], nearness[there.z], nearness[there.w]);
   const vec4 steps = vec4(centre - beside.x, beside.y - centre, centre - beside.z, beside.w - centre);
   const vec4 counts = vec4(lessThan(abs(steps), vec4(most_steep * reach)));
   const vec2 by_slope = vec2(mean_step(steps.xy, counts.xy), mean_step(steps.zw, counts.zw)) / rays.xz;
@@ -158,20 +158,18 @@ vec3 shading_normal(ivec2 pixel, int at, vec3 ray, out float bend) {
     n = slanted;
   } else {
     bend = most_bend;
-    for (int k = 0; k < 9; ++k) {
-      const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
-      const int there = near.y * size.x + near.x;
-      if (nearness[there] > 0.0 && abs(nearness[there] - centre) < reach) n += normals[there].xyz;
-    }
+    n *= 0.25;  // less than the neighbours: at a jump the pixel's own normal is the least certain
+    for (int k = 0; k < 4; ++k)
+      if (beside[k] > 0.0 && abs(steps[k]) < reach) n += normals[there[k]].xyz;
     n = normalize(n);
     if (dot(slanted, ray) > dot(n, ray)) n = slanted;
   }
   const ivec2 border = ivec2(clamp(0.5 * radius * centre / rays.x, 1.0, 24.0));
   const ivec2 inner = clamp(pixel, min(border, size.xy / 2), max(size.xy - 1 - border, size.xy / 2));
   if (inner != pixel) {
-    const int there = inner.y * size.x + inner.x;
-    if (nearness[there] > 0.0 && abs(nearness[there] - centre) < 2.0 * reach) {
-      n = normals[there].xyz;
+    const int inside = inner.y * size.x + inner.x;
+    if (nearness[inside] > 0.0 && abs(nearness[inside] - centre) < 2.0 * reach) {
+      n = normals[inside].xyz;
       bend = 0.0;
     }
   }
