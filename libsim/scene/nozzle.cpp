@@ -23,6 +23,16 @@ std::int64_t layers_within(double length, double pitch) {
 
 }  // namespace
 
+bool pours_into_another(const Nozzle& nozzle, const std::vector<Nozzle>& others, double frame_dt_s) {
+  return std::any_of(others.begin(), others.end(), [&](const Nozzle& other) {
+    const double apart =
+        std::hypot(nozzle.position_m[0] - other.position_m[0], nozzle.position_m[2] - other.position_m[2]);
+    const double above = nozzle.position_m[1] - other.position_m[1];
+    return apart < (nozzle.diameter_m + other.diameter_m) / 2 &&
+           std::abs(above) <= (above > 0 ? nozzle : other).speed_m_s * frame_dt_s;
+  });
+}
+
 JetLayer jet_layer(const Nozzle& nozzle, double spacing_m) {
   const double area = std::numbers::pi / 4 * nozzle.diameter_m * nozzle.diameter_m;
   JetLayer out;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace sim {
 
@@ -15,6 +16,10 @@ struct Nozzle {
   int off_frames = 0;                  ///< pause after each pulse
   double temperature_k = 0;            ///< of the water; 0 = the reference of the effect heat
 };
+
+/// True if the nozzle would put particles where one of `others` puts its own in the same frame: their mouths
+/// overlap as seen from above, and one lies no further below the other than the water moves in a frame.
+bool pours_into_another(const Nozzle& nozzle, const std::vector<Nozzle>& others, double frame_dt_s);
 
 /// A layer of the jet: `sites` particles on a Vogel spiral over the mouth, each of volume spacing^3. The
 /// distance between layers is `pitch_m` = spacing^3 sites / A, with the area A of the mouth. The flow A u at

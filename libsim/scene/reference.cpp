@@ -202,7 +202,7 @@ void add_effects(std::vector<KeyReference>& keys) {
 std::vector<KeyReference> all_keys() {
   std::vector<KeyReference> out{
       {"", "format", "whole number", "1, 2", "", "2 has obstacles and effects"},
-      {"", "name", "text", "", "", "1 to 64 characters"},
+      {"", "name", "text", "", "", "1 to 64 bytes"},
       {"", "gravity_m_s2", "number or list of numbers", "[0, 1000] or [-1000, 1000], its length at most 1000",
        "",
        "a number: along -y; a list: along x, y, z. Without `tank.lid` the second entry is negative, or all "
@@ -245,7 +245,10 @@ std::vector<KeyReference> all_keys() {
       {"water", "settle_frames", "whole number", "[0, 10000]", where_needed,
        "in place of `settle_s`: the frames themselves"},
       {"water", "viscosity_m2_s", "number", "[0, 1000]", "0.05 h sqrt(g h), h = 4 d",
-       "kinematic viscosity, explicit; keeps small particles from jittering"},
+       "kinematic viscosity, explicit; keeps small particles from jittering. In a substep of dt at most "
+       "d^2 / (11 dt) of it acts, with d the spacing of the particles: `--explain` says so. Thick fluid "
+       "needs the "
+       "effect viscosity"},
 
       {"water.block", "min_m", "list of numbers", anywhere, "", "low corner, x, y, z, inside the tank"},
       {"water.block", "max_m", "list of numbers", anywhere, "", largest_corner},
@@ -269,7 +272,7 @@ std::vector<KeyReference> all_keys() {
       {"gaze", "frame", "whole number", "[0, 1000000]", "", "after that of the key before it"},
       {"gaze", "point_m", "list of numbers", anywhere, "", "x, y, z"},
 
-      {"visible", "name", "text", "", "", "1 to 64 characters"},
+      {"visible", "name", "text", "", "", "1 to 64 bytes"},
       {"visible", "min_m", "list of numbers", anywhere, "", least_corner},
       {"visible", "max_m", "list of numbers", anywhere, "", largest_corner},
 

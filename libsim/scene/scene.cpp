@@ -73,12 +73,6 @@ Camera overview_of(const Camera& view) {
   return out;
 }
 
-/// In the order of Wall.
-const std::vector<std::string>& wall_names() {
-  static const std::vector<std::string> names{"x_low", "x_high", "z_low", "z_high", "y_low", "y_high"};
-  return names;
-}
-
 Outlet read_outlet(const base::TomlTable& table, const Scene& scene) {
   Outlet out;
   const auto& names = wall_names();
@@ -245,6 +239,10 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
                  "= " + base::shortest(nozzle.speed_m_s) + " is faster than time.v_ref_m_s = " +
                      base::shortest(scene.v_ref_m_s) + ", from which the substeps follow",
                  "raise time.v_ref_m_s to that speed, or slow the nozzle down");
+    if (pours_into_another(nozzle, scene.nozzles, scene.frame_dt_s))
+      table.fail("position_m",
+                 "puts the mouth into the jet of an earlier nozzle, whose water begins there too",
+                 "move one of them sideways");
     scene.nozzles.push_back(nozzle);
   }
   if (scene.nozzles.empty()) return;
@@ -332,8 +330,10 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   if (const auto size = scene.name.size(); size < 1 || size > 64)
     root.fail("name", "is empty or too long: " + std::to_string(size) + " bytes", "use 1 to 64 bytes");
   scene.gravity_m_s2 = read_gravity(root);
-  for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
+  for (const double frame : root.numbers("checkpoints", 0, {0, 1e6})) {
+    if (frame != std::floor(frame)) root.fail("checkpoints", "holds a fraction", "write whole frames");
     scene.checkpoints.push_back(static_cast<int>(frame));
+  }
   const auto tank = root.table("tank");
   scene.tank_size_m = vector(tank, "size_m", {1e-2, farthest_m});
   scene.lid = tank.boolean_or("lid", false);

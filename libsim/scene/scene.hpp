@@ -67,6 +67,8 @@ inline constexpr std::size_t wall_count = 6;
 std::array<double, 3> inward_normal(Wall wall);
 /// The two axes along which a wall extends, ascending: 0 = x, 1 = y, 2 = z.
 std::array<std::size_t, 2> axes_of(Wall wall);
+/// The names of the walls in scene files, in the order of Wall.
+const std::vector<std::string>& wall_names();
 
 /// A rectangle in which a wall is open. Water that passes the wall's plane in the rectangle leaves the
 /// simulation at the end of that frame. Outlets are closed while the water settles.

@@ -63,13 +63,29 @@ double least_shear(const Scene& scene) {
   return nu > 0 ? 0.1 * scene.gravity_m_s2.size() * height / 2 / nu : 0;
 }
 
+/// What --explain says where the water's explicit viscosity is cut; empty where it acts in full. A substep
+/// takes at most half of what 22 nu dt / h^2 says of a pair (xsph_monaghan1989.cpp).
+std::string explicit_limit(const Scene& scene, const SimulationOptions& options) {
+  const double h = 2 * resolution_of(scene, options.method, options.n_star).spacing_m;
+  const int substeps = substeps_needed(scene, options);
+  const double most = 0.5 * h * h * substeps / (22 * frame_dt_of(scene, options));
+  const double asked =
+      options.viscosity_m2_s >= 0 ? options.viscosity_m2_s : viscosity_of(scene, options.n_star);
+  if (asked <= most) return "";
+  std::ostringstream out;
+  out << "  viscosity: of the water's " << asked << " m2/s at most " << most << " act at this size and "
+      << substeps << " substeps a frame; the effect viscosity has no such limit\n";
+  return out.str();
+}
+
 }  // namespace
 
 std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
                              const SimulationOptions& options) {
-  if (listed.empty() && scene.obstacles.empty()) return "";
+  if (listed.empty() && scene.obstacles.empty()) return explicit_limit(scene, options);
   const double d = resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m;
   std::ostringstream out;
+  out << explicit_limit(scene, options);
   if (!listed.empty()) out << "  effects: ";
   for (const Effect& effect : listed) {
     const auto& traits = traits_of(effect.kind);
@@ -196,8 +212,9 @@ double squeeze_speed(const Scene& scene, double finest_spacing_m) {
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters) {
   const double d = resolution.finest_spacing_m;
-  // Settled water without gravity is at rest: its remaining speeds are rounding errors.
-  const bool still = scene.gravity_m_s2.size() <= 0 && fall_speed * parameters.frame_s() < 1e-3 * d;
+  // Settled water without gravity is at rest: it moves by less than a tenth of a spacing in a frame, and what
+  // moves it are projections, splits and merges, not a fall.
+  const bool still = scene.gravity_m_s2.size() <= 0 && fall_speed * parameters.frame_s() < 0.1 * d;
   if (still) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
 }
@@ -220,6 +237,26 @@ double start_acceleration(const Scene& scene, const std::vector<ParticleState>& 
   return scene.gravity_m_s2.size() + omega * omega * reach_of(scene, start);
 }
 
+namespace {
+
+/// The error for forces that would compress even water at rest, within the substeps of a frame.
+base::Error too_strong(const Scene& scene, const SimulationOptions& options, double acceleration,
+                       const SubstepRule& rule) {
+  const double rate = rule.at_rest() / (rule.most() * frame_dt_of(scene, options));
+  std::ostringstream problem, mend;
+  problem << "pulls water at up to " << acceleration << " m/s2, for which a frame needs " << rule.at_rest()
+          << " substeps; at most " << rule.most() << " are computed, and the water would be compressed";
+  mend << "raise frames_per_s to " << std::ceil(rate) << ", ";
+  if (rule.at_rest() <= 64) mend << "set min_substeps to " << rule.at_rest() << ", ";
+  mend << "lower " << (scene.central_force ? "omega_per_s" : "gravity_m_s2")
+       << ", or use a smaller n_* (--n-star, or n_star in a protocol)";
+  return {"scene " + scene.name + ", n_* " + std::to_string(options.n_star) + ", " +
+              (scene.central_force ? "central_force" : "gravity_m_s2"),
+          problem.str(), mend.str()};
+}
+
+}  // namespace
+
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration) {
   constexpr int usual_most = 32;
@@ -233,7 +270,10 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   out.least = substeps_needed(scene, options);
   out.most = std::max(out.least, options.most_substeps > 0 ? options.most_substeps : usual_most);
   if (options.substeps > 0) out.most = out.least;
-  return {out, fastest};
+  const SubstepRule rule(out, fastest);
+  const bool chosen = options.substeps == 0 && options.most_substeps == 0;
+  if (chosen && rule.at_rest() > rule.most()) throw too_strong(scene, options, acceleration, rule);
+  return rule;
 }
 
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,

@@ -56,16 +56,20 @@ class SubstepRule {
   int wished() const {
     const double speed = fastest_.value() + 2 * limits_.acceleration_m_s2 * limits_.frame_dt_s;
     const double by_way = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
-    const double by_push =
-        limits_.frame_dt_s * std::sqrt(limits_.acceleration_m_s2 / (limits_.push * limits_.support_m));
-    const double steps = by_way < by_push ? by_push : by_way;
-    // The bound 1e6 also applies if the speed is not finite; the guards repair such particles.
-    const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;
-    return std::max(limits_.least, static_cast<int>(counted));
+    return std::max(limits_.least, counted(by_way < by_push() ? by_push() : by_way));
   }
   int next() const { return std::min(wished(), limits_.most); }
+  /// Number of substeps that a frame needs even if the water is at rest.
+  int at_rest() const { return std::max(limits_.least, counted(by_push())); }
+  int most() const { return limits_.most; }
 
  private:
+  double by_push() const {
+    return limits_.frame_dt_s * std::sqrt(limits_.acceleration_m_s2 / (limits_.push * limits_.support_m));
+  }
+  /// The bound 1e6 also applies if the speed is not finite; the guards repair such particles.
+  static int counted(double steps) { return static_cast<int>(steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6); }
+
   SubstepLimits limits_;
   TwoFramesAgo<double> fastest_;
 };

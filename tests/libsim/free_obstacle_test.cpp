@@ -246,8 +246,6 @@ TEST(FreeObstacles, CostNothingWhereNoneIs) {
   EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
   scene.obstacles[0].motion = ObstacleMotion::Free;
   EXPECT_THAT(launches(scene), hears);
-  scene.effects[0].options[static_cast<std::size_t>(sim::EffectOption::ViscosityStick)] = 0;
-  EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
 }
 
 TEST(FreeObstacles, BeginWithTheRun) {

@@ -111,6 +111,15 @@ TEST(NozzleScene, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(with("on_frames = 80", "on_frames = 0"), testing::HasSubstr("out of range"));
   EXPECT_THAT(with("corner_m = 2.0", "corner_m = 8.0"), testing::HasSubstr("overlap"));
   EXPECT_THAT(with("[recirculation]", "[recirculations]"), testing::HasSubstr("recirculation' is missing"));
+  // A second nozzle as wide and as fast, whose water moves 0.2 m in a frame.
+  const auto second = [&](const char* place) {
+    return fluid_test::scene_error(good + "\n[[nozzle]]\ndiameter_m = 3.0\nposition_m = " + place +
+                                   "\nspeed_m_s = 12.0\non_frames = 80\noff_frames = 80\n");
+  };
+  EXPECT_THAT(second("[7.2, 7.6, 8.2]"), testing::AllOf(testing::HasSubstr("nozzle[1].position_m"),
+                                                        testing::HasSubstr("earlier nozzle")));
+  EXPECT_EQ(second("[10.3, 7.6, 7.2]"), "no error");
+  EXPECT_EQ(second("[7.2, 7.4, 8.2]"), "no error");
 }
 
 TEST(NozzleScene, ScenesHoldTheirVolume) {

@@ -106,6 +106,70 @@ TEST(Obstacles, AWayThatLeavesTheWaterNoRoomIsRefusedForEveryMethodWithMends) {
   EXPECT_EQ(way_error(shorter), "");
 }
 
+/// A tank of 1.6 x 1 x 1 m with a lid and a plate that swings along `axis` between two blocks of water.
+sim::Scene closed_press(std::size_t axis) {
+  sim::Vec3d size{1, 1, 1}, plate{0.99, 0.99, 0.99}, way{};
+  size[axis] = 1.6;
+  plate[axis] = 0.2;
+  way[axis] = 0.6;
+  auto scene = fluid_test::tank(size, size, 0);
+  scene.lid = true;
+  scene.gate = false;
+  scene.v_ref_m_s = 2;
+  scene.water = {scene.water.front(), scene.water.front()};
+  scene.water[0].max_m[axis] = 0.6;
+  scene.water[1].min_m[axis] = 1.0;
+  scene.obstacles = {box({size[0] / 2, size[1] / 2, size[2] / 2}, plate)};
+  scene.obstacles[0].motion = ObstacleMotion::Swings;
+  scene.obstacles[0].way_m = way;
+  scene.obstacles[0].period_s = 4;
+  return scene;
+}
+
+TEST(Obstacles, APressIsRefusedAlongAnyAxisOfATankWithALid) {
+  // In front of the floor, or of the wall at x or z = 0, 0.1 m3 have room where 0.6 m3 of water are.
+  EXPECT_THAT(way_error(closed_press(1)),
+              AllOf(HasSubstr("swings down"), HasSubstr("0.1 m3 have room below")));
+  for (const std::size_t axis : {0u, 2u}) {
+    const std::string wall = axis == 0 ? "x_low" : "z_low";
+    EXPECT_THAT(way_error(closed_press(axis)),
+                AllOf(HasSubstr("towards the wall " + wall), HasSubstr("0.1 m3 have room between them"),
+                      HasSubstr("0.6 m3 of water"), HasSubstr("shorten way_m to a length of 0.0999 m")));
+  }
+  for (const std::size_t axis : {0u, 1u, 2u}) {
+    auto one_side = closed_press(axis);
+    one_side.water.erase(one_side.water.begin());
+    const char* const walls[] = {"x_high", "y_high", "z_high"};
+    EXPECT_THAT(way_error(one_side), HasSubstr(walls[axis]));
+    auto short_way = closed_press(axis);
+    short_way.obstacles[0].way_m[axis] = 0.01;
+    EXPECT_EQ(way_error(short_way), "");
+    auto narrow = closed_press(axis);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (k != axis) narrow.obstacles[0].size_m[k] = 0.9;
+    EXPECT_EQ(way_error(narrow), "");
+    auto open = closed_press(axis);
+    const auto low = static_cast<sim::Wall>(axis == 1 ? 4 : axis),
+               high = static_cast<sim::Wall>(axis == 1 ? 5 : axis + 1);
+    open.outlets = {{low, {0.1, 0.1}, {0.5, 0.5}}, {high, {0.1, 0.1}, {0.5, 0.5}}};
+    EXPECT_EQ(way_error(open), "");
+    auto without_lid = closed_press(axis);
+    without_lid.lid = false;
+    EXPECT_EQ(way_error(without_lid) == "", axis != 1);
+  }
+}
+
+TEST(Obstacles, AllWaterInsideObstaclesIsRefused) {
+  auto scene = fluid_test::tank({1.3, 1.1, 0.9}, {1.3, 0.5, 0.9}, 0);
+  scene.obstacles = {box({0.65, 0.3, 0.45}, {1.3, 0.6, 0.9})};
+  sim::SimulationOptions options;
+  options.n_star = 64;
+  EXPECT_THAT([&] { sim::make_simulation(scene, options); },
+              testing::ThrowsMessage<base::Error>(HasSubstr("leaves no water")));
+  scene.obstacles[0].size_m[0] = 1.0;
+  EXPECT_GT(sim::make_simulation(scene, options)->particle_count(), 0);
+}
+
 TEST(Obstacles, APressIsRefusedUpwardsFirstTiltedUnderWaterAndAsAMesh) {
   auto upwards = press();
   upwards.obstacles[0].way_m[1] = 0.5;

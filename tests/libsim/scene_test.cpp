@@ -196,6 +196,8 @@ TEST(Scene, ErrorsNameThePlaceAndTheMend) {
                 testing::HasSubstr("out of range\n  mend: use a value in [0, 1000000]"))
         << seed;
   EXPECT_THAT(error_of(replaced(text, "7.2, 12.8", "nan, 12.8")), testing::HasSubstr("must be finite"));
+  EXPECT_THAT(error_of(replaced(text, "checkpoints = [", "checkpoints = [1.5, ")),
+              testing::HasSubstr("'checkpoints' holds a fraction"));
 }
 
 TEST(Method, CountsAreReadAsUsersWriteThem) {

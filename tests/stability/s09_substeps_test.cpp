@@ -1,5 +1,7 @@
 /// S9: the number of substeps, which follows the fastest particle.
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <limits>
 
@@ -79,6 +81,41 @@ TEST(S09Jet, APoolUnderStrongGravityKeepsItsDensityAndHeight) {
     }
     EXPECT_FALSE(fluid->divergence()) << strength;
   }
+}
+
+/// Forces that compress even water at rest within the most substeps of a frame are refused, unless the number
+/// of substeps was given.
+TEST(S09Jet, ForcesBeyondTheMostSubstepsAreRefused) {
+  auto scene = fluid_test::tank({0.8, 1.6, 0.8}, {0.8, 0.8, 0.8}, 0);
+  scene.gravity_m_s2 = 900;
+  scene.frame_dt_s = 0.1;
+  sim::SimulationOptions options;
+  options.n_star = 256;
+  // d = 0.063 m, h = 0.126 m: 0.1 s sqrt(900 / (0.04 h)) = 42.2 substeps, and at most 32 at 14 frames/s.
+  const auto error = [&] {
+    try {
+      sim::make_simulation(scene, options);
+    } catch (const base::Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(error(), testing::AllOf(testing::HasSubstr("gravity_m_s2"), testing::HasSubstr("43 substeps"),
+                                      testing::HasSubstr("raise frames_per_s to 14"),
+                                      testing::HasSubstr("set min_substeps to 43")));
+  scene.min_substeps = 43;
+  EXPECT_EQ(error(), "");
+  scene.min_substeps = 2;
+  scene.frame_dt_s = 1.0 / 14;
+  EXPECT_EQ(error(), "");
+  scene.frame_dt_s = 0.1;
+  options.substeps = 8;
+  EXPECT_EQ(error(), "");
+  options.substeps = 0;
+  scene.gravity_m_s2 = 0;
+  scene.central_force = sim::CentralForce{.omega_per_s = 100, .centre_m = {0.4, 0, 0.4}, .axis = {0, 1, 0}};
+  EXPECT_THAT(error(),
+              testing::AllOf(testing::HasSubstr("central_force"), testing::HasSubstr("omega_per_s")));
 }
 
 TEST(S09Jet, TheMostIsReportedWhenItBinds) {

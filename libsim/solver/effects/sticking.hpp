@@ -81,17 +81,24 @@ struct BodyRows {
   }
 };
 
+/// Walls and obstacles also resist what moves towards or away from them, by this share of what they would
+/// resist along themselves if the fluid sticks. Pressure alone would hold the fluid up only after gravity has
+/// moved it by g dt^2 in each substep, however viscous it is (docs/decisions.md, Thick fluids).
+constexpr float upright_share = 0.25f;
+
 /// The shear stress rho_0 nu u / s, with the kinematic viscosity nu, acts on fluid within its spacing d of an
 /// obstacle's surface; s is the distance to the surface and u the slip speed. This layer has one particle per
 /// area d^2 at every level. The fluid then comes to rest at the surface itself, in a lattice at any s and in
-/// disordered fluid. u is tangential, relative to the body's rigid motion extended to the particle: fluid
-/// that rotates with a body is not braked. In the implicit step the terms stay symmetric and positive
+/// disordered fluid. u is relative to the body's rigid motion extended to the particle: fluid that rotates
+/// with a body is not braked. Along the surface u counts by the effect's stick, along the normal by
+/// upright_share. In the implicit step the terms stay symmetric and positive
 /// definite: each is the square of a difference.
 struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyRows rows;
-  float rate;            ///< nu dt times the effect's stick coefficient (0: fluid slips, 1: it sticks), m2
+  float rate;            ///< nu dt, m2
+  float stick;           ///< the effect's coefficient (0: fluid slips, 1: it sticks)
   float finest_support;  ///< support of the finest particles (mass m_*), m
   /// Minimum s as a share of d, equal to the minimum distance between particles and walls.
   static constexpr float nearest = 0.1f;
@@ -105,7 +112,7 @@ struct StickingBodies {
       const float steps =
           rate * face_share(body, xyz(at), near.distance) / (d * at_least(near.distance, nearest * d));
       const Vec3 slip = v - (First ? body.velocity_at(xyz(at)) : way_of(b, xyz(at)));
-      then(b, steps * (slip - dot(slip, near.normal) * near.normal));
+      then(b, steps * (stick * slip + (upright_share - stick) * dot(slip, near.normal) * near.normal));
     });
   }
   SIM_FN Vec3 way_of(int b, Vec3 x) const {

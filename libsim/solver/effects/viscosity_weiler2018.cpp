@@ -30,9 +30,10 @@ SIM_FN float weight_of(const Kernel& kernel, float mass_ratio, float r2) {
 }
 
 /// Behind a wall the fluid continues as its mirror image. If the fluid slips, the image has the mirrored
-/// velocity. If it sticks, the image has the negative of the mirrored velocity, so that the velocity along
-/// the wall is 0 at the wall. Pairs with images are symmetric like other pairs. Images of images, behind
-/// edges, are left out.
+/// velocity. If it sticks, the image has the negative velocity along the wall, so that this velocity is 0 at
+/// the wall. Towards the wall it has 1 - 2 upright_share of the particle's velocity: without that share no
+/// wall would hold a column up against gravity in the implicit step. Pairs with images are symmetric like
+/// other pairs. Images of images, behind edges, are left out.
 struct Images {
   Walls walls;
   float turn;  ///< factor of the image's velocity: 1 slips, -1 sticks
@@ -49,7 +50,8 @@ struct Images {
   }
   SIM_FN Vec4 velocity(int k, Vec4 v) const {
     const Vec3 normal = walls.planes[k].normal;
-    return with_w(turn * (xyz(v) - 2 * dot(normal, xyz(v)) * normal), 0);
+    const float upright = upright_share + (2 - upright_share) * turn;
+    return with_w(turn * xyz(v) - upright * dot(normal, xyz(v)) * normal, 0);
   }
 };
 
@@ -254,7 +256,7 @@ void solve_for(FluidState& state, ViscosityColumns p, Bodies bodies) {
 void run_viscosity(FluidState& state, ViscosityColumns p) {
   const auto& k = state.parameters;
   const float stick = k.effects[EffectOption::ViscosityStick];
-  if (!state.obstacles.exists() || stick == 0) return solve_for(state, p, NoBodies{});
+  if (!state.obstacles.exists()) return solve_for(state, p, NoBodies{});
   auto& o = state.obstacles;
   const BodyListener to = state.effects_listener();
   const bool solved = to.sums || o.free.size() > 0;
@@ -262,15 +264,18 @@ void run_viscosity(FluidState& state, ViscosityColumns p) {
     o.rows.resize(o.bodies.size());
     o.rows.zero();
   }
-  const float rate = stick * k.dt * k.effects[EffectKind::Viscosity];
+  const float rate = k.dt * k.effects[EffectKind::Viscosity];
   const float d = 0.5f * state.finest_support;
   const BodyRows rows{.rows = solved ? o.rows.data() : nullptr,
                       .bodies = o.bodies.data(),
                       .free = o.free.size() > 0 ? o.free.data() : nullptr,
                       .count = solved ? o.count() : 0,
                       .unit = 1 + rate / (StickingBodies::nearest * d * d)};
-  const StickingBodies bodies{
-      .solids = state.solids(), .rows = rows, .rate = rate, .finest_support = state.finest_support};
+  const StickingBodies bodies{.solids = state.solids(),
+                              .rows = rows,
+                              .rate = rate,
+                              .stick = stick,
+                              .finest_support = state.finest_support};
   solve_for(state, p, bodies);
   if (to.sums) for_each("record bodies", rows.count, RecordGained{rows, to, k.dt});
 }

@@ -155,8 +155,8 @@ SIM_TEST(Viscosity, SolvesItsEquation) {
       for (std::size_t j = 0; j < points.size(); ++j) {
         const Vec3d y = vector(points[j]), u = vector(after[j]);
         if (j != i) pull(points[j], y, u);
-        const double turn = 1 - 2 * stick;
-        pull(points[j], {-1 - y[0], y[1], y[2]}, {-turn * u[0], turn * u[1], turn * u[2]});
+        const double turn = 1 - 2 * stick, upright = 0.25 + 0.75 * turn;
+        pull(points[j], {-1 - y[0], y[1], y[2]}, {-upright * u[0], turn * u[1], turn * u[2]});
       }
       const Vec3d was = vector(before[i]);
       for (std::size_t k = 0; k < 3; ++k) {
