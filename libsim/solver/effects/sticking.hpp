@@ -23,8 +23,16 @@ struct BodyRows {
   /// StickingBodies::each), because residuals and directions exceed the fluid's speeds by up to this factor,
   /// and fixed point has a limited range.
   float unit;
+  float dt;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
+  /// Velocity at x that the fluid's pressure gives body b within the substep; 0 unless it is free.
+  SIM_FN Vec3 pressed(int b, Vec3 x) const {
+    if (!moves(b)) return {0, 0, 0};
+    const FreeBody& it = free[b];
+    const Vec3 round = spin_of(it, bodies[b].turn, it.torque);
+    return dt * ((1 / it.mass) * it.force + cross(round, x - bodies[b].centre));
+  }
   /// The particles' sums for body b, as velocity and angular velocity if it is free, otherwise as momentum
   /// and moment. They belong to the residual or to A p, with A the system's matrix and p the search
   /// direction. Resets the sums.
@@ -111,9 +119,14 @@ struct StickingBodies {
     for_bodies_within(solids, xyz(at), d, [&](int b, const Body& body, const Body::Near& near) {
       const float steps =
           rate * face_share(body, xyz(at), near.distance) / (d * at_least(near.distance, nearest * d));
-      const Vec3 slip = v - (First ? body.velocity_at(xyz(at)) : way_of(b, xyz(at)));
+      const Vec3 slip = v - (First ? before_pressure(b, body, xyz(at)) : way_of(b, xyz(at)));
       then(b, steps * (stick * slip + (upright_share - stick) * dot(slip, near.normal) * near.normal));
     });
+  }
+  /// The body's velocity at x without what pressure gave it in this substep. The fluid has its gravity and
+  /// not yet its pressure: compared with a body that has both, it would drag floating bodies down.
+  SIM_FN Vec3 before_pressure(int b, const Body& body, Vec3 x) const {
+    return body.velocity_at(x) - rows.pressed(b, x);
   }
   SIM_FN Vec3 way_of(int b, Vec3 x) const {
     if (!rows.moves(b)) return {0, 0, 0};

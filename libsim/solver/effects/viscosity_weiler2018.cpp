@@ -270,7 +270,8 @@ void run_viscosity(FluidState& state, ViscosityColumns p) {
                       .bodies = o.bodies.data(),
                       .free = o.free.size() > 0 ? o.free.data() : nullptr,
                       .count = solved ? o.count() : 0,
-                      .unit = 1 + rate / (StickingBodies::nearest * d * d)};
+                      .unit = 1 + rate / (StickingBodies::nearest * d * d),
+                      .dt = k.dt};
   const StickingBodies bodies{.solids = state.solids(),
                               .rows = rows,
                               .rate = rate,
