@@ -39,6 +39,8 @@ std::string in_words(const GuardCounts& met) {
               "in a particle's own place (counted in each projection)") +
       part_of(met.not_finite, "particle", "particles", "not finite or far outside the tank") +
       part_of(met.neighbours_dropped, "neighbour", "neighbours", "left out because a list was full") +
+      part_of(met.nozzle_waited, "layer", "layers",
+              "that a nozzle did not pour for want of water in the tank's corners or of room for particles") +
       part_of(met.saliency_not_finite, "saliency", "saliencies", "not finite");
   return parts.empty() ? "" : "guards stepped in: " + parts.substr(2);
 }

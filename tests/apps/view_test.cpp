@@ -76,6 +76,13 @@ TEST_F(ViewE2e, ASoundRunTellsOfNoGuard) {
   EXPECT_EQ(outcome.out.find("first trouble"), std::string::npos) << outcome.out;
 }
 
+TEST(Guards, TellOfLayersThatANozzleDidNotPour) {
+  EXPECT_EQ(
+      sim::in_words(sim::GuardCounts{.nozzle_waited = 1}),
+      "guards stepped in: 1 layer that a nozzle did not pour for want of water in the tank's corners or of "
+      "room for particles");
+}
+
 TEST(Guards, TellOfNeighboursInOnePlaceAndNotOfPairs) {
   EXPECT_EQ(sim::in_words(sim::GuardCounts{.coincident_pairs = 2}),
             "guards stepped in: 2 neighbours in a particle's own place (counted in each projection)");
