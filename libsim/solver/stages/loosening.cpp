@@ -48,11 +48,12 @@ struct Loosen {
 using LoosenView =
     ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
 
-/// Does nothing in weightless fluid, which has no pressure, and with mixed particle sizes, which form no
-/// lattice.
+/// Acts after the last substep of a frame: the projections of the next frame's first substep undo most steps,
+/// and its other substeps damp the speed that this leaves, so that fluid at rest is calm between frames. Does
+/// nothing in weightless fluid, which has no pressure, and with mixed particle sizes, which form no lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
-  if (!state.one_level || k.weightless()) return;
+  if (!state.one_level || k.weightless() || state.substep + 1 < k.substeps) return;
   const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
   for_each("loosen", p.size(),
            Loosen{.position = p.position(),
