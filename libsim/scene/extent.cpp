@@ -262,7 +262,10 @@ void check_ways(const Scene& scene, std::int64_t n_star) {
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m) {
   const std::string place = "scene " + scene.name + ", n_* " + std::to_string(n_star) + ", ";
   check_water(scene, place, resolution_of(scene, method, n_star));
-  if (!scene.obstacles.empty() && fill_positions(scene, method, n_star).empty())
+  // A coarse lattice, which is soon filled, nearly always finds water.
+  const std::int64_t coarse = std::min<std::int64_t>(n_star, 512);
+  if (!scene.obstacles.empty() && fill_positions(scene, method, coarse).empty() &&
+      fill_positions(scene, method, n_star).empty())
     throw base::Error(place + "obstacle", "leaves no water: all of it would begin inside obstacles",
                       "make the obstacles smaller, or put the water beside them");
   check_substeps(scene, place, n_star);

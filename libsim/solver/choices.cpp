@@ -271,8 +271,8 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   out.most = std::max(out.least, options.most_substeps > 0 ? options.most_substeps : usual_most);
   if (options.substeps > 0) out.most = out.least;
   const SubstepRule rule(out, fastest);
-  const bool chosen = options.substeps == 0 && options.most_substeps == 0;
-  if (chosen && rule.at_rest() > rule.most()) throw too_strong(scene, options, acceleration, rule);
+  const bool of_scene = options.substeps == 0 && options.most_substeps == 0 && options.frame_dt_s == 0;
+  if (of_scene && rule.at_rest() > rule.most()) throw too_strong(scene, options, acceleration, rule);
   return rule;
 }
 

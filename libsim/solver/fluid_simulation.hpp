@@ -39,7 +39,8 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// fall_speed.
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
 /// Rule for the number of substeps. `fastest`: largest speed of the start, the nozzles and the obstacles,
-/// m/s. `acceleration`: largest acceleration by gravity and the central force, m/s2.
+/// m/s. `acceleration`: largest acceleration by gravity and the central force, m/s2. base::Error if water at
+/// rest needs more substeps than a frame may have and the options set neither these nor the frame's duration.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
 /// Speed limit, m/s: three times fall_speed, plus three times the capillary speed, plus the squeeze speed of

@@ -83,8 +83,8 @@ TEST(S09Jet, APoolUnderStrongGravityKeepsItsDensityAndHeight) {
   }
 }
 
-/// Forces that compress even water at rest within the most substeps of a frame are refused, unless the number
-/// of substeps was given.
+/// Forces that compress even water at rest within the most substeps of a frame are refused, unless
+/// substeps or the frame's duration were given.
 TEST(S09Jet, ForcesBeyondTheMostSubstepsAreRefused) {
   auto scene = fluid_test::tank({0.8, 1.6, 0.8}, {0.8, 0.8, 0.8}, 0);
   scene.gravity_m_s2 = 900;
@@ -112,6 +112,9 @@ TEST(S09Jet, ForcesBeyondTheMostSubstepsAreRefused) {
   options.substeps = 8;
   EXPECT_EQ(error(), "");
   options.substeps = 0;
+  options.frame_dt_s = 0.1;
+  EXPECT_EQ(error(), "");
+  options.frame_dt_s = 0;
   scene.gravity_m_s2 = 0;
   scene.central_force = sim::CentralForce{.omega_per_s = 100, .centre_m = {0.4, 0, 0.4}, .axis = {0, 1, 0}};
   EXPECT_THAT(error(),
