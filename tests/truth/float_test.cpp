@@ -88,7 +88,11 @@ Afloat with(Afloat afloat, double beta, Backend backend = Backend::Cpu) {
 TEST(Float, ASphereFloatsHalfSunkAtLevel0) { floats_half_sunk(finest); }
 TEST(Float, ASphereFloatsHalfSunkAtLevel3) { floats_half_sunk(coarsest); }
 TEST(Float, ASphereFloatsHalfSunkAtMixedLevels) { floats_half_sunk(both); }
-TEST(Float, ASphereFloatsHalfSunkWithTemporalAcceleration) { floats_half_sunk(with(finest, 0.67)); }
+TEST(Float, ASphereFloatsHalfSunkWithTemporalAcceleration) {
+  floats_half_sunk(with(finest, 0.67));
+  // Measured 0.50; 0.56 to 0.59 if particles beside the sphere may rest, and 0.65 to 0.69 at beta 0.3.
+  floats_half_sunk(with(both, 0.67));
+}
 
 /// A heavy sphere must sink with its added mass: (m - rho V) g = (m + rho V / 2) a. Walls at 2 R from its
 /// middle increase the inertia.

@@ -1,4 +1,5 @@
 #include "libsim/activation/importance.hpp"
+#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -29,6 +30,8 @@ struct Choose {
   bool within_frame;
   float beta, dt;
   std::uint32_t frame, seed;
+  Solids solids;
+  const FreeBody* free;  ///< one per body; nullptr if no obstacle is free
 
   SIM_FN void operator()(int i) const {
     const Vec3 x = xyz(position[i]);
@@ -37,11 +40,20 @@ struct Choose {
     start_cell[i] = change_cells.cell_of(x);
     const bool drawn = activation_draw(static_cast<std::uint32_t>(id[i]), frame, seed) < p;
     const Vec4 mean = sample(mean_velocity, level[i] * grid.cells(), grid.corners(x));
-    const bool on = drawn || mean.w == value_unknown || (within_frame && (fresh(i) || fast(i)));
+    const bool on = drawn || mean.w == value_unknown || (within_frame && (fresh(i) || fast(i) || bears(i)));
     active[i] = on ? 1 : 0;
     if (!on && !within_frame) velocity[i] = with_w(xyz(mean), 0);
   }
   SIM_FN bool fresh(int i) const { return age && age[i] == 0; }
+  /// True within a support radius of a free body, whose weight the particle's pressure bears.
+  SIM_FN bool bears(int i) const {
+    bool out = false;
+    if (free) {
+      for_bodies_within(solids, xyz(position[i]), position[i].w,
+                        [&](int b, const Body&, const Body::Near&) { out = out || free[b].mass > 0; });
+    }
+    return out;
+  }
   SIM_FN bool fast(int i) const { return length(xyz(velocity[i])) * dt > 0.5f * position[i].w; }
 };
 
@@ -77,7 +89,9 @@ void choose(FluidState& state, ActivationColumns p) {
                   .beta = a.beta,
                   .dt = state.parameters.dt,
                   .frame = a.frame,
-                  .seed = a.seed});
+                  .seed = a.seed,
+                  .solids = state.solids(),
+                  .free = state.obstacles.free.size() > 0 ? state.obstacles.free.data() : nullptr});
 }
 
 void run_activation(FluidState& state, ActivationColumns p) {
