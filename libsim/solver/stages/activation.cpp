@@ -1,5 +1,4 @@
 #include "libsim/activation/importance.hpp"
-#include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -47,12 +46,11 @@ struct Choose {
   SIM_FN bool fresh(int i) const { return age && age[i] == 0; }
   /// True within a support radius of a free body, whose weight the particle's pressure bears.
   SIM_FN bool bears(int i) const {
-    bool out = false;
-    if (free) {
-      for_bodies_within(solids, xyz(position[i]), position[i].w,
-                        [&](int b, const Body&, const Body::Near&) { out = out || free[b].mass > 0; });
+    if (!free) return false;
+    for (int b = 0; b < solids.count; ++b) {
+      if (free[b].mass > 0 && solids.distance(b, xyz(position[i])) < position[i].w) return true;
     }
-    return out;
+    return false;
   }
   SIM_FN bool fast(int i) const { return length(xyz(velocity[i])) * dt > 0.5f * position[i].w; }
 };
