@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "libsim/view/gbuffer.hpp"
 #include "libsim/saliency/looks.hpp"
+#include "libsim/view/gbuffer.hpp"
 
 namespace measure {
 
