@@ -50,8 +50,8 @@ struct TimingModel {
 /// alone, and "ptpe", log mu - b delta.
 std::vector<TimingModel> usual_timing_models();
 /// Reads "ptpe,p95,longest+hitches": names of predictors, "ptpe", or two predictors joined by '+'.
-/// base::Error for an unknown name, fewer than two models, and a model given twice, also with its predictors in
-/// another order.
+/// base::Error for an unknown name, fewer than two models, and a model given twice, also with its predictors
+/// in another order.
 std::vector<TimingModel> parse_timing_models(const std::string& text);
 /// The models with these names. place: where they stand, for messages. base::Error as parse_timing_models().
 std::vector<TimingModel> timing_models(const std::vector<std::string>& names, const std::string& place);

@@ -268,9 +268,9 @@ TEST(SceneReference, SaysOfEachKeyWhetherItIsNeeded) {
 }
 
 TEST(SceneReference, HasAUnitForEachNumberButTheseRatiosAndCounts) {
-  const std::set<std::string> plain{"format",       "min_substeps",    "iterations",    "courant",
-                                    "axis",         "rotation_axis",   "scale",         "friction",
-                                    "stick",        "cg_steps",        "strength",      "coarsest_level",
+  const std::set<std::string> plain{"format",       "min_substeps",    "iterations",     "courant",
+                                    "axis",         "rotation_axis",   "scale",          "friction",
+                                    "stick",        "cg_steps",        "strength",       "coarsest_level",
                                     "crest_weight", "saliency_weight", "most_particles", "seed"};
   for (const auto& key : sim::scene_reference())
     EXPECT_EQ(key.unit.empty(), plain.contains(key.key) || key.type.find("number") == std::string::npos)

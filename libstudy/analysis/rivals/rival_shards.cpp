@@ -42,9 +42,9 @@ std::vector<double> rival_numbers_of(const Json& json) {
 
 Json rival_fit_json(const stats::Result<stats::RivalFit>& fit) {
   if (!fit) return fit.reason();
-  return Json::array({Json(fit->scores), rival_numbers_json(fit->thresholds), rival_numbers_json(fit->coefficients),
-                      json_number(fit->sd_person), json_number(fit->lapse), json_number(fit->log_likelihood),
-                      Json(fit->parameters)});
+  return Json::array({Json(fit->scores), rival_numbers_json(fit->thresholds),
+                      rival_numbers_json(fit->coefficients), json_number(fit->sd_person),
+                      json_number(fit->lapse), json_number(fit->log_likelihood), Json(fit->parameters)});
 }
 
 /// Reads what rival_fit_json() wrote.

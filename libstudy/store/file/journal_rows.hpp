@@ -22,7 +22,8 @@ struct Table {
 };
 
 /// All tables that the journal records, parents first. It omits frames, headset slots, head poses, gaze, gaze
-/// validations, exports, chores and reserved slots. Only a withdrawal or a merge deletes rows of the recorded tables.
+/// validations, exports, chores and reserved slots. Only a withdrawal or a merge deletes rows of the recorded
+/// tables.
 std::span<const Table> tables();
 /// Returns the recorded table with this name, or null if the journal does not record the table.
 const Table* find_table(const std::string& name);

@@ -23,7 +23,7 @@ struct SessionCopy {
   std::int64_t events = 0, frames = 0, played = 0;  ///< row counts: its progress; played: presentations
   std::int64_t gaze = 0;                            ///< number of gaze samples, head poses and validations
   std::optional<StationNumber> station_number;
-  bool counts = false;  ///< true: the session counts as a use of its slot (Store::taken_slots())
+  bool counts = false;    ///< true: the session counts as a use of its slot (Store::taken_slots())
   bool reserved = false;  ///< true: a central database dealt its slot (ReservedSlot)
 };
 
