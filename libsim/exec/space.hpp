@@ -149,10 +149,10 @@ bool launches_overlap();
 /// Number of lanes that should share each of n indices: the fastest number for the solver's passes over
 /// neighbours, as measured on an H200.
 int team_wish(int n);
-/// Half as many, at least one: fastest for density and displacement of particles of several levels.
-inline int half_team_wish(int n) {
-  const int half = team_wish(n) / 2;
-  return half > 0 ? half : 1;
+/// The same for density and displacement: with particles of several levels half as many, at least one.
+inline int team_wish_of_projections(int n, bool one_level) {
+  const int wish = team_wish(n);
+  return one_level || wish == 1 ? wish : wish / 2;
 }
 
 /// Launches `kernel` after the previous launch. If the device supports it, the kernel's blocks start while

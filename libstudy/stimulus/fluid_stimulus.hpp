@@ -101,7 +101,8 @@ class LiveFluid final : public Stimulus {
   /// How often each of the solver's safety rules, such as the speed limit, intervened in all frames since the
   /// stimulus was made, including frames before a rewind.
   const sim::GuardCounts& guards() const { return guards_; }
-  /// Simulation::needs_every_picture(); false before start().
+  /// True if the simulation needs a picture of every frame (Simulation::needs_every_picture). False before
+  /// start().
   bool needs_every_picture() const { return simulation_ && simulation_->needs_every_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }

@@ -75,9 +75,9 @@ void slump_at_any_size(Backend backend) {
   EXPECT_NEAR(slump({.method = MethodKind::Ours, .backend = backend}, 1, 1.5), 0, 2e-3);
 }
 
-/// A column of 0.4 x 0.9 x 0.4 m that no wall holds sideways, on the floor and on a box. Its own weight
-/// squeezes fluid of 1000 m2/s by g H^2 / (6 nu) = 1.3 mm/s at the top, and its shear at the floor lets it
-/// slide less. Where the implicit step does not know of the floor, it sinks by 0.4 m/s instead.
+/// A column of 0.4 x 0.9 x 0.4 m that no wall holds sideways, on the floor and on a box. In
+/// fluid of 1000 m2/s its weight lowers the top at g H^2 / (6 nu) = 1.3 mm/s, and less where it sticks to the
+/// floor. If the implicit step ignores the floor, the column falls at 0.4 m/s.
 void free_column_stands(Backend backend) {
   NEEDS_EFFECTS;
   for (const bool on_box : {false, true}) {

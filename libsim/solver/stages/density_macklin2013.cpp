@@ -23,7 +23,7 @@ struct Density {
   float rest_density, relaxation;
 
 #ifdef SIM_CUDA
-  int lanes(int n) const { return OneLevel ? team_wish(n) : half_team_wish(n); }
+  int lanes(int n) const { return team_wish_of_projections(n, OneLevel); }
 #endif
 
   /// Adds particle j to the sums; a separate function, so that the loop vectorises (SIM_LANES).

@@ -21,7 +21,7 @@ struct Displace {
   float rest_density, tensile, wall_gap, momentum;
 
 #ifdef SIM_CUDA
-  int lanes(int n) const { return OneLevel ? team_wish(n) : half_team_wish(n); }
+  int lanes(int n) const { return team_wish_of_projections(n, OneLevel); }
 #endif
 
   /// Adds particle j to the step; a separate function, so that the loop vectorises (SIM_LANES). own: lambda

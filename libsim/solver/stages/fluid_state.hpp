@@ -290,17 +290,18 @@ struct FluidState {
   TimeOfRest time_of_rest() const { return {after_rest() ? particles.all().active.data() : nullptr}; }
   /// Recorder of troubled particles for a pass in the first (0) or second (1) half of the present substep.
   Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
-  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
-  Calm calm(double share) const {
-    return calm_below(share * saliency.readings.calm_speed, static_cast<double>(parameters.gravity.strength),
+  /// Degree of rest with the limit speed share x sqrt(g d_*).
+  Calm calm_under(double share) const {
+    return calm_below(share, static_cast<double>(parameters.gravity.strength),
                       static_cast<double>(finest_support) / 2);
   }
+  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
+  Calm calm(double share) const { return calm_under(share * saliency.readings.calm_speed); }
   /// Degree of rest of water with levels by the mean motion of its surroundings (the column Drift), with
   /// `share` times that motion's limit speed (docs/decisions.md, "Boiling and waves").
   Calm drift_calm(double share) const {
-    return calm_below(share * 0.45 * static_cast<double>(parameters.still_speed),
-                      static_cast<double>(parameters.gravity.strength),
-                      static_cast<double>(finest_support) / 2);
+    constexpr double of_still_speed = 0.45;
+    return calm_under(share * of_still_speed * static_cast<double>(parameters.still_speed));
   }
   Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };

@@ -88,9 +88,7 @@ void run_velocity(FluidState& state, VelocityColumns p) {
                    .brake = state.brake(p.id(), 1),
                    .dt = k.dt,
                    .drift = drifts ? p.drift() : nullptr,
-                   .still = drifts ? state.drift_calm(1)
-                                   : calm_below(still_speed, gravity,
-                                                static_cast<double>(state.finest_support) / 2),
+                   .still = drifts ? state.drift_calm(1) : state.calm_under(still_speed),
                    .finest_support = state.finest_support,
                    .before_kicks = shorter > 1});
 }

@@ -16,8 +16,8 @@ struct DriftAverage {
   float mixed;     ///< share of the difference to neighbours that one substep removes from the average
   float followed;  ///< share of the difference to the velocity that one substep removes
   float kept;      ///< share of the largest recent square that remains after one substep
-  /// Square of the speed from which a particle's average does not mix with its neighbours', m2/s2. Such water
-  /// is far from still whatever its neighbours do, and the sum over them takes time.
+  /// From this squared speed on, m2/s2, a particle's average does not mix with those of its neighbours. Such
+  /// fast water is not still in any case, and the sum over neighbours takes time.
   float fast;
 
   /// The average after a substep. mean: the average before, mixed with that of neighbours. An average that is

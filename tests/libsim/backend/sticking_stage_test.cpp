@@ -162,8 +162,8 @@ SIM_TEST(Sticking, AnyLatticeFeelsTheStressOfTheShear) {
 SIM_TEST(Sticking, StickActsAlongTheSurfaceAlone) {
   NEEDS_EFFECTS;
   // A lone particle beside the ball: its speed along the surface falls from v to v / (1 + stick nu dt / (d s)
-  // face), with spacing d = 0.2 m, distance s = 0.1 m and face = 0.5625. Along the normal a quarter of what
-  // sticks is resisted, at any stick.
+  // face), with spacing d = 0.2 m, distance s = 0.1 m and face = 0.5625. Along the normal the resistance is a
+  // quarter of that at stick = 1, whatever the stick.
   constexpr float steps = nu * 1.0f / 180 / (0.2f * 0.1f) * 0.5625f;
   for (const float stick : {0.0f, 0.5f, 1.0f}) {
     auto state = honey_round({{0.4f, 0, 0, 0.4f}}, {body_of({0, 0, 0}, 0.3f)}, static_cast<double>(stick));

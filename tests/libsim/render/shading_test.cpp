@@ -335,7 +335,8 @@ TEST_F(ShadingGl, MirroredLightHasNoStepWhereItsRaysBeginToFall) {
 }
 
 TEST_F(ShadingGl, WaterThatFallsAwayFromTheEyeShowsNoGround) {
-  // A slope of dark water, 15 degrees down, seen at 5 degrees: the mirrored rays fall into water.
+  // Dark water slopes down by 15 degrees away from the eye, which looks down by 5 degrees. The surface
+  // mirrors the eye's rays downwards, into the water.
   std::vector<RenderParticle> slope;
   for (float x = 2; x < 6; x += 0.1F)
     for (float along = 0; along < 6; along += 0.1F)

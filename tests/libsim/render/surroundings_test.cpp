@@ -307,7 +307,7 @@ TEST_F(SurroundingsGl, WaterIsLevelWhereItMeetsAWall) {
   double sum = 0;
   int pixels = 0;
   for (int row = 0; row < 400; ++row) {
-    // The row shows water, at y = 1, at this way from the far wall.
+    // Distance from the far wall, m, of the water surface (y = 1 m) that this row of pixels shows.
     const double slope = (399.5 - row) * rays.scale_y + rays.offset_y;
     const double z = 2 + (slope * pose[6] - pose[10]) / (pose[9] - slope * pose[5]);
     if (!(z > 0.065 && z < 0.1)) continue;
