@@ -96,7 +96,7 @@ struct Behind {
 // widens by the angle by which refraction then spreads the rays. Where the normal turns within one particle, light is
 // spread as by an unknown back: the surface is not known that finely, and would bend lines of the ground to loops.
 // `length_m`: of the water along d; `wall_m`: way along d to the tank's wall or an obstacle.
-Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, float wall_m, float radius,
+Behind refracted(vec3 position, vec3 d, vec3 n, bool at_glass, float bend, float length_m, float wall_m, float radius,
                  float footprint_per_m, float distance_m) {
   const vec3 inside = refract(d, n, into_water);
   const Crossing crossing = cross_tank(position, inside);
@@ -112,22 +112,29 @@ Behind refracted(vec3 position, vec3 d, vec3 n, float bend, float length_m, floa
   Behind behind;
   behind.from = position + (way - 1e-3) * inside;
   behind.along = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
-  float through = way;
-  // A side wall that light meets too slantwise to leave the water mirrors it to the floor.
+  // A side wall that light meets too slantwise to leave the water mirrors it to the floor, if the water goes on to
+  // there: behind the near glass, below a level surface, or where the way left to the floor is as short as that so far.
   const int wall = crossing.leave_axis;
-  const bool slantwise = wall != 1 && inside[wall] * inside[wall] < no_way_out;
-  if (slantwise && to_wall > 0.95 && way > 3.0 * radius && room == max(crossing.leave, 0.0)) {
-    behind.along = inside;
-    behind.along[wall] = -inside[wall];
-    through += min(behind.from.y / max(-inside.y, 0.05), way);
-  }
+  const float slantwise = 1.0 - smoothstep(no_way_out - 0.04, no_way_out + 0.06, inside[wall] * inside[wall]);
+  const float to_floor = behind.from.y / max(-inside.y, 0.05);
+  const float water_below = at_glass ? 1.0 : smoothstep(0.3, 0.8, max(n.y, way / max(to_floor, 1e-3)));
+  float mirrors = slantwise * water_below * smoothstep(0.9, 1.0, to_wall) * smoothstep(2.0, 4.0, way / radius);
+  if (wall == 1 || room < crossing.leave) mirrors = 0.0;
+  vec3 along = inside;
+  along[wall] = -along[wall];
+  // One ray is followed, through the wall or mirrored. Between the two the floor's mean colour takes its place.
+  const float followed = abs(2.0 * mirrors - 1.0), through = way + min(2.0 * mirrors, 1.0) * min(to_floor, way);
+  const vec3 kept = exp(-absorption.rgb * through);
+  vec3 instead = vec3(0.0);
+  if (followed < 1.0) instead = (1.0 - followed) * kept * floor_around(behind.from + to_floor * along, along);
+  if (mirrors > 0.5) behind.along = along;
   behind.framed = smoothstep(0.5, 0.9, to_wall);
   const float unknown = smoothstep(0.2, 0.6, bend * radius / (footprint_per_m * distance_m));
   behind.footprint_per_m = footprint_per_m + (1.0 - into_water) * bend * (1.0 + 2.0 * as_drop) +
                            back_spread * max(1.0 - behind.framed, unknown);
   behind.travelled = footprint_per_m / behind.footprint_per_m * distance_m + way;
-  behind.kept = exp(-absorption.rgb * through);
-  behind.added = in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0));
+  behind.kept = followed * kept;
+  behind.added = in_scatter * (1.0 - exp(-0.25 * through)) * (0.75 + 0.35 * max(dot(n, sun), 0.0)) + instead;
   return behind;
 }
 
@@ -256,7 +263,12 @@ void main() {
     float bend;
     const vec3 smoothed = mat3(eye_to_world) * shading_normal(pixel, at, ray, bend);
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
-    const vec3 n = flat_at_glass(level_at_walls(smoothed, position, radius), crossing, d, distance_m, radius, bend);
+    vec3 n = flat_at_glass(level_at_walls(smoothed, position, radius), crossing, d, distance_m, radius, bend);
+#ifdef OBSTACLES
+    // Thin water before an obstacle turns no light: its waterline is where the solid begins, not where the drawn
+    // particles end.
+    n = normalize(mix(-d, n, smoothstep(0.0, radius, obstacle_at - distance_m)));
+#endif
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
     const bool at_glass = distance_m - crossing.enter < radius;
@@ -266,7 +278,7 @@ void main() {
     wall_at = min(wall_at, obstacle_at);
 #endif
     const Behind wet =
-        refracted(position, d, n, bend, length_m, wall_at - distance_m, radius, footprint_per_m, distance_m);
+        refracted(position, d, n, at_glass, bend, length_m, wall_at - distance_m, radius, footprint_per_m, distance_m);
     if (opacity == 1.0) behind = wet;
     behind.kept = mix(vec3(1.0), wet.kept, opacity);
     behind.added = opacity * wet.added;

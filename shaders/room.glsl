@@ -17,10 +17,21 @@ float checker(vec2 p, vec2 width) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
+const vec3 dark_tile = vec3(0.50, 0.53, 0.54), light_tile = vec3(0.80, 0.80, 0.77);
+
+// Mean light of the tiles around point p of the floor, along the ray d.
+vec3 floor_around(vec3 p, vec3 d) {
+  vec3 light = 0.5 * (dark_tile + light_tile);
+#ifdef LIT_FLOOR
+  light *= floor_light(p, d, 1.0);
+#endif
+  return light;
+}
+
 vec3 tiles(vec3 p, vec3 d, float width) {
   const vec2 wide = on_floor(d, width), joints = strips(p.xz, 0.012, 1.0, wide);
   const float joint = joints.x + joints.y - joints.x * joints.y;
-  return mix(mix(vec3(0.50, 0.53, 0.54), vec3(0.80, 0.80, 0.77), checker(p.xz, wide)), vec3(0.30, 0.31, 0.32), joint);
+  return mix(mix(dark_tile, light_tile, checker(p.xz, wide)), vec3(0.30, 0.31, 0.32), joint);
 }
 
 // Distance of a point on a face of the tank to the nearest edge of that face, m. `axis`: 0, 1, 2 = x, y, z, the axis
