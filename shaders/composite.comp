@@ -265,12 +265,15 @@ void main() {
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     vec3 n = flat_at_glass(level_at_walls(smoothed, position, radius), crossing, d, distance_m, radius, bend);
 #ifdef OBSTACLES
-    // Thin water before an obstacle turns no light: its waterline is where the solid begins, not where the drawn
-    // particles end.
-    n = normalize(mix(-d, n, smoothstep(0.0, radius, obstacle_at - distance_m)));
+    // Thin water before an obstacle neither turns nor mirrors light: particles do not show where they end at a solid.
+    const float before_solid = smoothstep(0.0, radius, obstacle_at - distance_m);
+    n = normalize(mix(-d, n, before_solid));
 #endif
     const float length_m = water_length(xy), opacity = small_cover(pixel, nearness[at], radius);
     share = opacity * reflected_share(clamp(-dot(d, n), 0.0, 1.0)) * smoothstep(0.0, thin_m, length_m);
+#ifdef OBSTACLES
+    share *= before_solid;
+#endif
     const bool at_glass = distance_m - crossing.enter < radius;
     mirrored = mirrored_light(position, d, n, at_glass, radius, footprint_per_m + 2.0 * bend, share);
     float wall_at = crossing.leave;
