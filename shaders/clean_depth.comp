@@ -14,8 +14,8 @@ const ivec2 half_window[12] =
             ivec2(-2, 1), ivec2(1, 2), ivec2(-1, 2), ivec2(2, 2), ivec2(-2, 2));
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
+  const ivec2 pixel = wet_pixel();
+  if (any(greaterThanEqual(pixel, size.xy))) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
   const float radius = radii[at];

@@ -1,8 +1,10 @@
 // Shades water over the room: Fresnel (Schlick), refraction, Beer-Lambert absorption. Writes sRGB. Also leaves linear
-// light and the nearness of what each pixel shows, from which edges.comp smooths outlines.
+// light and the nearness of what each pixel shows, from which edges.comp smooths outlines. DRY: for the tiles without
+// water.
 #include "view.glsl"
 #include "room.glsl"
 #include "shaded.glsl"
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Nearness { float nearness[]; };
 layout(std430, binding = 2) readonly buffer Thickness { float thickness[]; };
@@ -230,7 +232,11 @@ vec2 foam_cover(int at) { return 1.0 - exp(-vec2(cover[2 * at], cover[2 * at + 1
 #endif
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+#ifdef DRY
+  const ivec2 pixel = dry_pixel();
+#else
+  const ivec2 pixel = wet_pixel();
+#endif
   if (any(greaterThanEqual(pixel, size.xy))) return;
   const vec2 xy = vec2(pixel) + 0.5;
   const vec2 slope = slope_at(xy);
@@ -243,8 +249,13 @@ void main() {
   float frame_at;
   float frame = near_frame(crossing, eye, d, footprint_per_m, frame_at);
   const int at = pixel.y * size.x + pixel.x;
+#ifdef DRY
+  bool is_water = false;
+  float nearest = 0.0;
+#else
   bool is_water = nearness[at] > 0.0;
   float nearest = nearness[at];
+#endif
 #ifdef OBSTACLES
   const float obstacle_at = meet_obstacles(eye, d).at;
   if (is_water && obstacle_at < per_depth / nearness[at]) is_water = false;

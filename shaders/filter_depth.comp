@@ -14,8 +14,8 @@ uniform int counts;  // 1: count the capped pixels, in the first pass of each di
 #include "narrow_range.glsl"
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
+  const ivec2 pixel = wet_pixel();
+  if (any(greaterThanEqual(pixel, size.xy))) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
   const float radius = radii[at];

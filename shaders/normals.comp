@@ -22,8 +22,8 @@ float difference(ivec2 pixel, float centre, ivec2 step) {
 }
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, size.xy)) || is_dry()) return;
+  const ivec2 pixel = wet_pixel();
+  if (any(greaterThanEqual(pixel, size.xy))) return;
   const int at = pixel.y * size.x + pixel.x;
   const float centre = source[at];
   if (centre == 0.0) {

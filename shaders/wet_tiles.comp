@@ -1,13 +1,15 @@
-// Marks the tiles of 16 x 8 px that hold water (wet_tiles.glsl); one work group per tile. Also writes the inputs of
-// the depth filter: nearness, and the radius of the particle in front of each pixel.
+// Lists the tiles of 16 x 8 px (wet_tiles.glsl); one work group per tile. Also writes the inputs of the depth filter:
+// nearness, and the radius of the particle in front of each pixel.
 #include "view.glsl"
 #include "counters.glsl"
+#define LIST_TILES
+#include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) readonly buffer Depth { float depth[]; };
 layout(std430, binding = 2) readonly buffer Front { uint front[]; };
 layout(std430, binding = 3) writeonly buffer Radius { float radii[]; };  // 0: no water, or no particle in front
-layout(std430, binding = 5) buffer Wet { uint wet[]; };
+layout(std430, binding = 5) buffer Wet { uint wet[]; };  // per tile; bit 0: it holds water, bit 1: it held water before
 layout(std430, binding = 6) writeonly buffer Nearness { float nearness[]; };
 shared uint holds_water;
 
@@ -30,5 +32,11 @@ void main() {
     nearness[at] = nearness_of(depth[at]);
   }
   barrier();
-  if (gl_LocalInvocationIndex == 0u) wet[tile] = state;
+  if (gl_LocalInvocationIndex != 0u) return;
+  wet[tile] = state;
+  if (state != 0u) {
+    listed_tiles[atomicAdd(wet_groups.x, 1u)] = tile;
+  } else {
+    listed_tiles[last_tile() - atomicAdd(dry_groups.x, 1u)] = tile;
+  }
 }

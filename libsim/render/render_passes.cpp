@@ -38,6 +38,12 @@ void dispatch_particles(std::int64_t count) {
   glDispatchCompute(static_cast<GLuint>(across), static_cast<GLuint>((groups + across - 1) / across), 1);
 }
 
+void dispatch_tiles(const ViewTargets& view, bool wet) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 8, view.tiles.name());
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, view.tiles.name());
+  glDispatchComputeIndirect(wet ? 0 : 16);
+}
+
 void bind_storage(std::initializer_list<unsigned> buffers) {
   glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizei>(buffers.size()), std::data(buffers));
 }
@@ -51,6 +57,13 @@ namespace {
 std::string defines_of(const Scene& scene) {
   return std::string(coefficients_of(scene.effects)[EffectKind::Foam] > 0 ? "#define FOAM\n" : "") +
          obstacle_defines(scene);
+}
+
+/// The program that shades tiles with water, or those without (`which`).
+GlProgram composite_of(const Scene& scene, const Surroundings& surroundings, const char* which) {
+  const std::string light = lights_the_floor(scene) ? "#define LIT_FLOOR\n" : "";
+  return compute_program("composite.comp",
+                         (defines_of(scene) + surroundings.defines() + light + which).c_str());
 }
 
 /// Distance grids of the meshes in the layout of shaders/obstacle_meshes.glsl; empty without meshes.
@@ -92,9 +105,8 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
       floor_light(lights_the_floor(scene) ? std::make_unique<FloorLight>(scene, chosen) : nullptr),
       surroundings(scene),
-      composite(compute_program(
-          "composite.comp",
-          (defines_of(scene) + surroundings.defines() + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
+      composite(composite_of(scene, surroundings, "")),
+      composite_dry(composite_of(scene, surroundings, "#define DRY\n")),
       outlines(compute_program("outlines.comp", foam ? "#define FOAM\n" : "")),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles),
@@ -171,7 +183,7 @@ void FluidRenderer::State::clear() {
   clear_targets.use();
   each_view([&](const ViewTargets& t) {
     bind_storage({0, t.depth.name(), t.front.name(), t.thickness.name(), counters.name(), t.wide_list.name(),
-                  t.wet.name()});
+                  t.wet.name(), 0, t.tiles.name()});
     dispatch_pixels(t.width, t.height);
   });
   timer.mark("clear");
@@ -179,11 +191,13 @@ void FluidRenderer::State::clear() {
 
 void FluidRenderer::State::smooth_depth() {
   wet_tiles.use();
-  each_view([&](const ViewTargets& t) {
-    bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(), t.wet.name(),
-                  t.filter_b.name()});
-    dispatch_pixels(t.width, t.height);
-  });
+  each_view(
+      [&](const ViewTargets& t) {
+        bind_storage({particles_, t.depth.name(), t.front.name(), t.radii.name(), counters.name(),
+                      t.wet.name(), t.filter_b.name(), 0, t.tiles.name()});
+        dispatch_pixels(t.width, t.height);
+      },
+      GL_COMMAND_BARRIER_BIT);
   timer.mark("wet tiles");
   filter_depth.use();
   const int wide_passes = 2 * options.filter_rounds;
@@ -194,21 +208,21 @@ void FluidRenderer::State::smooth_depth() {
     each_view([&](const ViewTargets& t) {
       const GlBuffer& from = pass % 2 == 0 ? t.filter_b : t.filter_a;
       const GlBuffer& to = pass % 2 == 0 ? t.filter_a : t.filter_b;
-      bind_storage({0, from.name(), t.radii.name(), to.name(), counters.name(), t.wet.name()});
-      dispatch_pixels(t.width, t.height);
+      bind_storage({0, from.name(), t.radii.name(), to.name(), counters.name()});
+      dispatch_tiles(t, true);
     });
   }
   timer.mark("filter");
   clean_depth.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({0, t.filter_b.name(), t.radii.name(), t.filter_a.name(), 0, t.wet.name()});
-    dispatch_pixels(t.width, t.height);
+    bind_storage({0, t.filter_b.name(), t.radii.name(), t.filter_a.name()});
+    dispatch_tiles(t, true);
   });
   timer.mark("clean-up");
   normals.use();
   each_view([&](const ViewTargets& t) {
-    bind_storage({0, t.filter_a.name(), t.radii.name(), t.normals.name(), 0, t.wet.name()});
-    dispatch_pixels(t.width, t.height);
+    bind_storage({0, t.filter_a.name(), t.radii.name(), t.normals.name()});
+    dispatch_tiles(t, true);
   });
   timer.mark("normals");
 }
@@ -241,15 +255,20 @@ void FluidRenderer::State::light_floor() {
 }
 
 void FluidRenderer::State::shade() {
-  composite.use();
-  tell_obstacles(composite);
   if (floor_light) floor_light->bind();
-  surroundings.bind(composite);
+  for (const GlProgram* program : {&composite, &composite_dry}) {
+    program->use();
+    tell_obstacles(*program);
+    surroundings.bind(*program);
+  }
   each_view([&](const ViewTargets& t) {
     bind_storage({t.filter_a.name(), t.normals.name(), t.thickness_a.name(), t.foam.name(), 0, 0,
                   t.shaded.name(), t.shown.name()});
     bind_obstacles();
-    dispatch_pixels(t.width, t.height);
+    dispatch_tiles(t, false);
+    composite.use();
+    dispatch_tiles(t, true);
+    composite_dry.use();
   });
   if (floor_light) glBindTextureUnit(0, 0);
   Surroundings::unbind();

@@ -29,6 +29,9 @@ void bind_storage(std::initializer_list<unsigned> buffers);
 /// Starts one invocation per pixel, in groups of 16 x 8, or per particle, in groups of 64.
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
+/// Starts one invocation per pixel of the view's tiles with water, or of those without
+/// (shaders/wet_tiles.glsl).
+void dispatch_tiles(const ViewTargets& view, bool wet);
 
 /// The parts of shaders/obstacles.glsl that the scene needs, as #define lines.
 std::string obstacle_defines(const Scene& scene);
@@ -55,7 +58,7 @@ struct FluidRenderer::State {
   GlProgram thickness_second = compute_program("smooth_thickness.comp");
   std::unique_ptr<FloorLight> floor_light;  // only with picture effects
   Surroundings surroundings;
-  GlProgram composite;
+  GlProgram composite, composite_dry;
   GlProgram outlines;
   GlProgram edges = compute_program("edges.comp");
   GlProgram splat_foam_program;

@@ -27,7 +27,8 @@ struct ViewTargets {
   GlBuffer touched;                   ///< per particle, flags of the splatting, see occlusion.glsl
   GlBuffer blocks;                    ///< farthest depth of each block of pixels
   GlBuffer wide_list;                 ///< particles with large footprints, see wide_list.glsl
-  GlBuffer wet;                       ///< flags of tiles that contain water, see wet_tiles.glsl
+  GlBuffer wet;                       ///< flags of tiles that contain water, see wet_tiles.comp
+  GlBuffer tiles;                     ///< lists of the tiles with and without water, see wet_tiles.glsl
   GlBuffer thickness;                 ///< sum of the chords of all spheres per cell, fixed point
   GlBuffer thickness_a, thickness_b;  ///< the smoothed result is in thickness_a, in fixed-point units
   GlBuffer foam;                      ///< two words per pixel, see foam.glsl; all 0 between pictures
