@@ -47,20 +47,24 @@ vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
   const vec3 from = (world_to_eye * vec4(position, 1.0)).xyz, along = mat3(world_to_eye) * mirrored;
   float way = first_step_r * radius, before = 0.0;
   bool in_air = false;
-  for (int k = 0; k < most_steps; ++k, before = way, way *= step_growth) {
+  vec2 xy = vec2(-1.0);
+  int k = 0;
+  for (; k < most_steps; ++k, before = way, way *= step_growth) {
     vec3 at = from + way * along;
-    if (-at.z < origin.z) return vec2(0.0);
-    vec2 xy = (at.xy / -at.z - rays.yw) / rays.xz;
-    if (any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) return vec2(0.0);
+    xy = (at.xy / -at.z - rays.yw) / rays.xz;
+    if (-at.z < origin.z || any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) {
+      k = most_steps;
+      break;
+    }
     float there = nearness[int(xy.y) * size.x + int(xy.x)];
     float behind = -at.z - (there > 0.0 ? 1.0 / there : 1e9);
     if (behind < 0.0) in_air = true;
-    if (!in_air || behind < 0.0 || behind > way - before + 2.0 * radius) continue;
-    const vec2 to_border = min(xy, vec2(size.xy) - xy) / vec2(size.xy);
-    const float inside = smoothstep(0.0, 0.1, min(to_border.x, to_border.y));
-    return vec2(inside * (1.0 - smoothstep(0.7, 1.0, float(k) / float(most_steps))), water_length(xy));
+    if (in_air && behind >= 0.0 && behind <= way - before + 2.0 * radius) break;
   }
-  return vec2(0.0);
+  if (k == most_steps) return vec2(0.0);
+  const vec2 to_border = min(xy, vec2(size.xy) - xy) / vec2(size.xy);
+  const float inside = smoothstep(0.0, 0.1, min(to_border.x, to_border.y));
+  return vec2(inside * (1.0 - smoothstep(0.7, 1.0, float(k) / float(most_steps))), water_length(xy));
 }
 
 // Light that the surface with the normal n mirrors into the eye's ray d. A ray that is mirrored downwards meets water
@@ -127,8 +131,7 @@ Behind refracted(vec3 position, vec3 d, vec3 n, bool at_glass, float bend, float
   // One ray is followed, through the wall or mirrored. Between the two the floor's mean colour takes its place.
   const float followed = abs(2.0 * mirrors - 1.0), through = way + min(2.0 * mirrors, 1.0) * min(to_floor, way);
   const vec3 kept = exp(-absorption.rgb * through);
-  vec3 instead = vec3(0.0);
-  if (followed < 1.0) instead = (1.0 - followed) * kept * floor_around(behind.from + to_floor * along, along);
+  const vec3 instead = (1.0 - followed) * mean_floor * exp(-absorption.rgb * (through + position.y));
   if (mirrors > 0.5) behind.along = along;
   behind.framed = smoothstep(0.5, 0.9, to_wall);
   const float unknown = smoothstep(0.2, 0.6, bend * radius / (footprint_per_m * distance_m));
@@ -212,15 +215,13 @@ vec3 level_at_walls(vec3 n, vec3 position, float radius) {
 // neighbours hold water too.
 float small_cover(ivec2 pixel, float nearness_here, float radius) {
   const float radius_px = radius * nearness_here / rays.x;
-  if (radius_px > 0.6) return 1.0;
+  const bool is_small = radius_px <= 0.6;
   int fluid = 0;
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      const ivec2 near = clamp(pixel + ivec2(x, y), ivec2(0), size.xy - 1);
-      fluid += int(nearness[near.y * size.x + near.x] > 0.0);
-    }
+  for (int k = is_small ? 0 : 9; k < 9; ++k) {
+    const ivec2 near = clamp(pixel + ivec2(k % 3, k / 3) - 1, ivec2(0), size.xy - 1);
+    fluid += int(nearness[near.y * size.x + near.x] > 0.0);
   }
-  return max(3.1416 * radius_px * radius_px, float(fluid - 1) / 8.0);
+  return !is_small ? 1.0 : max(3.1416 * radius_px * radius_px, float(fluid - 1) / 8.0);
 }
 
 #ifdef FOAM

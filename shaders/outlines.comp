@@ -1,5 +1,5 @@
 // Finds outlines: pixels whose right or upper neighbour shows another layer. Depth jumps there, and does not follow
-// the slope on either side. Lists the tiles of 16 x 8 px that an outline touches; a tile may be listed several times.
+// the slope on either side. Lists the tiles of 16 x 8 px that an outline touches, each once.
 #include "view.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Shown { float shown[]; };
@@ -10,8 +10,8 @@ layout(std430, binding = 4) buffer Cover { uint cover[]; };  // share of the pix
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 #endif
 layout(std430, binding = 2) writeonly buffer Outlines { uint outlines[]; };  // bit 0: to the right; bit 1: above
+layout(std430, binding = 5) buffer Wet { uint wet[]; };  // per tile; bit 2: it is listed here
 #include "outline_tiles.glsl"
-shared uint touched;  // bit 0: this tile; bit 1: also the tile to the right; bit 2: also the tile above
 
 const float least_jump_r = 1.2;  // smallest jump of depth between layers of water, splatted radii
 const float least_jump = 0.03;   // the same between obstacles, share of the depth
@@ -60,32 +60,26 @@ void leave_foam(int at) {
 }
 #endif
 
-void list_tile(uvec2 tile, uvec2 count) {
-  if (any(greaterThanEqual(tile, count))) return;
-  tiles[atomicAdd(tile_groups.x, 1u)] = tile.y * count.x + tile.x;
+void list_tile(uvec2 tile) {
+  if (any(greaterThanEqual(tile, gl_NumWorkGroups.xy))) return;
+  const uint at = tile.y * gl_NumWorkGroups.x + tile.x;
+  if ((atomicOr(wet[at], 4u) & 4u) == 0u) tiles[atomicAdd(tile_groups.x, 1u)] = at;
 }
 
 void main() {
-  if (gl_LocalInvocationIndex == 0u) touched = 0u;
-  barrier();
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (all(lessThan(pixel, size.xy))) {
-    const int at = pixel.y * size.x + pixel.x;
-    const float here = shown[at], radius = normals[at].w * origin.w;
-    const uint bits = uint(is_outline(pixel, ivec2(1, 0), here, radius)) |
-                      uint(is_outline(pixel, ivec2(0, 1), here, radius)) << 1;
-    outlines[at] = bits;
-    if (bits != 0u) {
-      const uint right = uint(gl_LocalInvocationID.x == 15u) & bits, above = uint(gl_LocalInvocationID.y == 7u) & bits >> 1;
-      atomicOr(touched, 1u | right << 1 | above << 2);
-    }
+  if (any(greaterThanEqual(pixel, size.xy))) return;
+  const int at = pixel.y * size.x + pixel.x;
+  const float here = shown[at], radius = normals[at].w * origin.w;
+  const uint bits = uint(is_outline(pixel, ivec2(1, 0), here, radius)) |
+                    uint(is_outline(pixel, ivec2(0, 1), here, radius)) << 1;
+  outlines[at] = bits;
 #ifdef FOAM
-    leave_foam(at);
+  leave_foam(at);
 #endif
-  }
-  barrier();
-  if (gl_LocalInvocationIndex != 0u) return;
-  if ((touched & 1u) != 0u) list_tile(gl_WorkGroupID.xy, gl_NumWorkGroups.xy);
-  if ((touched & 2u) != 0u) list_tile(gl_WorkGroupID.xy + uvec2(1, 0), gl_NumWorkGroups.xy);
-  if ((touched & 4u) != 0u) list_tile(gl_WorkGroupID.xy + uvec2(0, 1), gl_NumWorkGroups.xy);
+  if (bits == 0u) return;
+  const uvec2 tile = gl_WorkGroupID.xy;
+  list_tile(tile);
+  if (gl_LocalInvocationID.x == 15u && (bits & 1u) != 0u) list_tile(tile + uvec2(1, 0));
+  if (gl_LocalInvocationID.y == 7u && (bits & 2u) != 0u) list_tile(tile + uvec2(0, 1));
 }

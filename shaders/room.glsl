@@ -18,15 +18,7 @@ float checker(vec2 p, vec2 width) {
 }
 
 const vec3 dark_tile = vec3(0.50, 0.53, 0.54), light_tile = vec3(0.80, 0.80, 0.77);
-
-// Mean light of the tiles around point p of the floor, along the ray d.
-vec3 floor_around(vec3 p, vec3 d) {
-  vec3 light = 0.5 * (dark_tile + light_tile);
-#ifdef LIT_FLOOR
-  light *= floor_light(p, d, 1.0);
-#endif
-  return light;
-}
+const vec3 mean_floor = 0.5 * (dark_tile + light_tile);
 
 vec3 tiles(vec3 p, vec3 d, float width) {
   const vec2 wide = on_floor(d, width), joints = strips(p.xz, 0.012, 1.0, wide);

@@ -60,20 +60,18 @@ bool goes_first(Sphere s) {
   return (s.centre.z - 3.0 * s.radius) * last_nearness[pixel.y * size.x + pixel.x] <= 1.0;
 }
 
-// True if this round takes particle i.
-bool take_turn(uint i) {
-  if (second_round == 1) return (touched[i] & in_first_round) == 0u;
-  const vec4 particle = particles[i];
-  const bool first = !is_usable(particle) || goes_first(sphere_of(i));
-  touched[i] = first ? in_first_round : 0u;
-  return first;
-}
-
 void main() {
   const uint i = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-  if (i >= particle_count || !take_turn(i)) return;
+  if (i >= particle_count || (second_round == 1 && (touched[i] & in_first_round) != 0u)) return;
   const vec4 particle = particles[i];
-  if (!is_usable(particle)) {
+  const bool usable = is_usable(particle);
+  const Sphere s = sphere_of(i);
+  if (second_round == 0) {
+    const bool first = !usable || goes_first(s);
+    touched[i] = first ? in_first_round : 0u;
+    if (!first) return;
+  }
+  if (!usable) {
     atomicAdd(not_finite, 1u);
     return;
   }
@@ -81,7 +79,6 @@ void main() {
     atomicAdd(beyond, 1u);
     return;
   }
-  const Sphere s = sphere_of(i);
   const ivec4 box = footprint(s, rays, size.xy);
   const ivec2 extent = box.zw - box.xy;
   if (extent.x <= 0 || extent.y <= 0) {

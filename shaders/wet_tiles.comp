@@ -11,10 +11,14 @@ layout(std430, binding = 2) readonly buffer Front { uint front[]; };
 layout(std430, binding = 3) writeonly buffer Radius { float radii[]; };  // 0: no water, or no particle in front
 layout(std430, binding = 5) buffer Wet { uint wet[]; };  // per tile; bit 0: it holds water, bit 1: it held water before
 layout(std430, binding = 6) writeonly buffer Nearness { float nearness[]; };
-shared uint holds_water;
+shared uint holds_water, before;
 
 void main() {
-  if (gl_LocalInvocationIndex == 0u) holds_water = 0u;
+  const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (gl_LocalInvocationIndex == 0u) {
+    holds_water = 0u;
+    before = wet[tile];
+  }
   barrier();
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   const bool inside = all(lessThan(pixel, size.xy));
@@ -22,8 +26,7 @@ void main() {
   const bool fluid = inside && is_fluid(depth[at]);
   if (fluid) holds_water = 1u;
   barrier();
-  const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  const uint state = (wet[tile] & 1u) << 1 | holds_water;
+  const uint state = (before & 1u) << 1 | holds_water;
   if (inside && state != 0u) {
     float radius = 0.0;
     if (fluid && front[at] != 0xffffffffu) radius = particles[front[at]].w;
@@ -31,7 +34,6 @@ void main() {
     radii[at] = radius;
     nearness[at] = nearness_of(depth[at]);
   }
-  barrier();
   if (gl_LocalInvocationIndex != 0u) return;
   wet[tile] = state;
   if (state != 0u) {

@@ -281,8 +281,8 @@ void FluidRenderer::State::smooth_edges() {
   each_view(
       [&](const ViewTargets& t) {
         glNamedBufferSubData(t.outline_tiles.name(), 0, sizeof no_groups, no_groups.data());
-        bind_storage(
-            {t.shown.name(), t.normals.name(), t.outlines.name(), t.outline_tiles.name(), t.foam.name()});
+        bind_storage({t.shown.name(), t.normals.name(), t.outlines.name(), t.outline_tiles.name(),
+                      t.foam.name(), t.wet.name()});
         dispatch_pixels(t.width, t.height);
       },
       GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

@@ -34,7 +34,7 @@ void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foa
     foam.fill(0);
   }
   const std::int64_t tile_count = std::int64_t{(width + 15) / 16} * ((height + 7) / 8);
-  outline_tiles.reserve(4 * (4 + 3 * tile_count));  // a tile is listed three times at most
+  outline_tiles.reserve(4 * (4 + tile_count));
   tiles.reserve(4 * (8 + tile_count));
   wet.reserve(4 * tile_count);
   wet.fill(1);  // all tiles count as wet, so that the next draw clears them
