@@ -40,24 +40,28 @@ float water_length(vec2 xy) {
   return mix(a, b, f.y) * thickness_rule.y;
 }
 
+// A vector of eye space as (pixel coordinates x depth, depth).
+vec3 in_pixels(vec3 v) { return vec3((v.xy + v.z * rays.yw) / rays.xz, -v.z); }
+
 // Water in the picture that a mirrored ray meets: x: how much of the ray it takes, 0 to 1; y: its length along the
 // pixel's ray, m. The ray is followed in steps that grow with the way; it meets water where a step ends not far behind
 // the water that the picture shows there.
 vec2 water_ahead(vec3 position, vec3 mirrored, float radius) {
-  const vec3 from = (world_to_eye * vec4(position, 1.0)).xyz, along = mat3(world_to_eye) * mirrored;
+  const vec3 from = in_pixels((world_to_eye * vec4(position, 1.0)).xyz);
+  const vec3 along = in_pixels(mat3(world_to_eye) * mirrored);
   float way = first_step_r * radius, before = 0.0;
   bool in_air = false;
   vec2 xy = vec2(-1.0);
   int k = 0;
   for (; k < most_steps; ++k, before = way, way *= step_growth) {
-    vec3 at = from + way * along;
-    xy = (at.xy / -at.z - rays.yw) / rays.xz;
-    if (-at.z < origin.z || any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) {
+    const vec3 at = from + way * along;
+    xy = at.xy / at.z;
+    if (at.z < origin.z || any(lessThan(xy, vec2(0.0))) || any(greaterThanEqual(xy, vec2(size.xy)))) {
       k = most_steps;
       break;
     }
     float there = nearness[int(xy.y) * size.x + int(xy.x)];
-    float behind = -at.z - (there > 0.0 ? 1.0 / there : 1e9);
+    float behind = at.z - (there > 0.0 ? 1.0 / there : 1e9);
     if (behind < 0.0) in_air = true;
     if (in_air && behind >= 0.0 && behind <= way - before + 2.0 * radius) break;
   }
@@ -118,8 +122,8 @@ Behind refracted(vec3 position, vec3 d, vec3 n, bool at_glass, float bend, float
   Behind behind;
   behind.from = position + (way - 1e-3) * inside;
   behind.along = normalize(mix(d, inside, to_wall + 2.0 * as_drop));
-  // A side wall that light meets too slantwise to leave the water mirrors it to the floor, if the water goes on to
-  // there: behind the near glass, below a level surface, or where the way left to the floor is as short as that so far.
+  // A side wall that light meets too slantwise to leave the water mirrors it to the floor. That needs water down to the
+  // floor: a pool behind the near glass or below a level surface, or a floor that is no further than the ray has come.
   const int wall = crossing.leave_axis;
   const float slantwise = 1.0 - smoothstep(no_way_out - 0.04, no_way_out + 0.06, inside[wall] * inside[wall]);
   const float to_floor = behind.from.y / max(-inside.y, 0.05);
@@ -128,7 +132,8 @@ Behind refracted(vec3 position, vec3 d, vec3 n, bool at_glass, float bend, float
   if (wall == 1 || room < crossing.leave) mirrors = 0.0;
   vec3 along = inside;
   along[wall] = -along[wall];
-  // One ray is followed, through the wall or mirrored. Between the two the floor's mean colour takes its place.
+  // One ray is followed: mirrored from a share of one half on, through the wall below. Towards that share its light
+  // fades into the floor's mean colour, so that the picture has no step.
   const float followed = abs(2.0 * mirrors - 1.0), through = way + min(2.0 * mirrors, 1.0) * min(to_floor, way);
   const vec3 kept = exp(-absorption.rgb * through);
   const vec3 instead = (1.0 - followed) * mean_floor * exp(-absorption.rgb * (through + position.y));
@@ -277,7 +282,8 @@ void main() {
     const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     vec3 n = flat_at_glass(level_at_walls(smoothed, position, radius), crossing, d, distance_m, radius, bend);
 #ifdef OBSTACLES
-    // Thin water before an obstacle neither turns nor mirrors light: particles do not show where they end at a solid.
+    // Water thinner than a splatted radius before a solid turns and mirrors less light, so that the waterline does not
+    // show single particles.
     const float before_solid = smoothstep(0.0, radius, obstacle_at - distance_m);
     n = normalize(mix(-d, n, before_solid));
 #endif
