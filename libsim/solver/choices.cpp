@@ -305,6 +305,8 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
     out.keeps_all_solved = keeps->kind;
   }
   out.levels = method.adaptive() && levels.first < levels.second;
+  const double finest = resolution_of(scene, options.method, options.n_star).finest_spacing_m;
+  out.rests_by_drift = parameters.rests_by_drift(static_cast<float>(2 * finest));
   out.forced_targets = out.levels && options.forced_targets;
   out.saliency_parts = options.saliency_parts;
   // Activation needs saliency too: it weights the particles' importance by saliency.

@@ -151,7 +151,9 @@ class FluidSimulation final : public Simulation {
     const Scene acting = acting_scene(scene, levels_.first);
     const SolverParameters numbers = solver_parameters(acting, options_);
     check_foam(state_, numbers.effects, scene, frame_dt());
-    Schedule schedule = compile_schedule(demand_of(scene, options_, numbers, levels_));
+    Demand demand = demand_of(scene, options_, numbers, levels_);
+    demand.rests_by_drift = state_.one_level_rests_by_drift;  // keeps the column Drift, or its absence
+    Schedule schedule = compile_schedule(demand);
     // From here on only an allocation can fail.
     scene_ = std::move(scene);
     schedule_ = std::move(schedule);
@@ -241,17 +243,14 @@ class FluidSimulation final : public Simulation {
   std::vector<ParticleState> read_state() const override { return states_of(state_.particles); }
   void save_state(const std::filesystem::path& path) override {
     StateWriter out;
-    int n = state_.particles.size();
-    int capacity = state_.particles.capacity();
+    int n = state_.particles.size(), capacity = state_.particles.capacity();
     out(n, capacity, levels_.first, levels_.second);
     keep(out);
     write_state_file(path, run_key(scene_, options_), out.bytes());
   }
 
   bool copy_to_gl(const GlBufferRef& buffer) override {
-    const auto pack = [this](const auto& memory) {
-      pack_for_drawing(state_.particles, static_cast<Vec4*>(memory[0]));
-    };
+    const auto pack = [this](auto& to) { pack_for_drawing(state_.particles, static_cast<Vec4*>(to[0])); };
     const bool shared = share(gl_, {buffer}, state_.particles.size(), pack);
     state_.saliency.input.give_back();
     return shared;
@@ -305,6 +304,7 @@ class FluidSimulation final : public Simulation {
     state_.parameters = solver_parameters(acting_scene(scene_, levels.first), options_);
     const Demand demand = demand_of(scene_, options_, state_.parameters, levels);
     changes_levels_ = demand.levels;
+    state_.one_level_rests_by_drift = demand.rests_by_drift;
     looks_ = demand.saliency || demand.gaze_targets;
     schedule_ = compile_schedule(demand);
   }
@@ -349,8 +349,7 @@ class FluidSimulation final : public Simulation {
 
   void resume(std::string_view body) {
     StateReader in(body);
-    int n = 0;
-    int capacity = 0;
+    int n = 0, capacity = 0;
     std::pair<int, int> levels;
     in(n, capacity, levels.first, levels.second);
     if (n < 0 || capacity < n || levels.first < 0 || levels.second < levels.first ||

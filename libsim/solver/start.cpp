@@ -115,6 +115,10 @@ void put_in(FluidState& state, const std::vector<ParticleState>& start) {
   p.level.from_host(level);
   state.particles.begin_descents();
   if (state.particles.has(Column::Saliency)) p.saliency.zero();
+  if (state.particles.has(Column::Drift)) {
+    for (Vec4& v : velocity) v.w = dot(xyz(v), xyz(v));
+    p.drift.from_host(velocity);
+  }
   if (state.particles.has(Column::Unrest)) {
     p.unrest.from_host(std::vector<float>(start.size(), std::numeric_limits<float>::quiet_NaN()));
   }
@@ -259,6 +263,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   Demand demand;
   demand.parameters = state.parameters;
   demand.settling = true;
+  demand.rests_by_drift = state.one_level_rests_by_drift;
   state.one_level = true;
   const Schedule settling = compile_schedule(demand);
   state.walls = walls_of(scene, true);

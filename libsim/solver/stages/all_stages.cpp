@@ -55,7 +55,7 @@ std::vector<Stage> all_stages() {
              {predict_stage(), held_at_walls_stage(), neighbours_stage(), ease_stage(),
               pre_stabilisation_stage(), parting_stage(), coarse_pressure_stage(), wall_cells_stage(),
               before_projections_stage(), density_stage(), missing_density_stage(), displacement_stage(),
-              velocity_stage(), xsph_stage(), xsph_of_levels_stage()});
+              velocity_stage(), xsph_stage(), xsph_of_short_steps_stage(), xsph_of_levels_stage()});
   add(false);
   // bodies_pushed_stage comes after all stages that push bodies.
   out.insert(out.end(), {bodies_pushed_stage(), velocity_grid_stage(), settling_stage(), outflow_stage()});

@@ -1,8 +1,10 @@
 #pragma once
 /// All state that stages may access.
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -53,6 +55,20 @@ struct SolverParameters {
   float most_speed = 0;
   /// Minimum distance of a particle to a wall, as a share of the particle's spacing.
   float wall_gap = 0.1f;
+
+  /// h / (800 g dt^2) of particles with support h, m; 0 without gravity. Above 1 a substep counts as short:
+  /// the speed of the projections' jitter, a share of d / dt, is then large compared with sqrt(g d)
+  /// (docs/decisions.md, "Still water of one size").
+  double shortness(float support) const {
+    const double g = static_cast<double>(gravity.strength), step = static_cast<double>(dt);
+    return g > 0 ? static_cast<double>(support) / (g * step * step * 800) : 0;
+  }
+  /// True if water of one level rests by its mean motion, as water with levels does, in a run with this
+  /// support of level 0, m: in short substeps, unless viscosity removes over 0.005 of the velocity
+  /// differences in one (docs/decisions.md, "Still water in short substeps").
+  bool rests_by_drift(float support) const {
+    return still_speed > 0 && shortness(support) > 1 && 22 * viscosity * dt < 0.005f * support * support;
+  }
 };
 
 /// Limits the speed of particles to `most_speed`. Counts each case, and records the removed momentum.
@@ -189,8 +205,9 @@ struct FluidState {
   /// mass. It includes mass that nozzles have taken but not yet poured, which is negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
-  Vec3 refuge{};           ///< new position of particles that are not finite or far outside the tank
-  bool one_level = true;   ///< all particles have one level throughout the run
+  Vec3 refuge{};          ///< new position of particles that are not finite or far outside the tank
+  bool one_level = true;  ///< all particles have one level throughout the run
+  bool one_level_rests_by_drift = false;  ///< Demand::rests_by_drift
   bool compressed = true;  ///< the water is or may be compressed: frames begin with a pre-stabilisation
   int substep = 0;
   bool forces_acted = false;  ///< velocities already include the substep's forces: predict adds none
@@ -295,13 +312,23 @@ struct FluidState {
     return calm_below(share, static_cast<double>(parameters.gravity.strength),
                       static_cast<double>(finest_support) / 2);
   }
-  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
-  Calm calm(double share) const { return calm_under(share * saliency.readings.calm_speed); }
-  /// Degree of rest of water with levels by the mean motion of its surroundings (the column Drift), with
-  /// `share` times that motion's limit speed (docs/decisions.md, "Boiling and waves").
+  /// Support of the run's smallest particles, m: that of level 0, except in runs of one coarser level.
+  float smallest_support() const { return std::max(finest_support, lightest_support); }
+  /// SolverParameters::shortness() of the smallest particles, at least 1.
+  double shortness() const { return std::max(1.0, parameters.shortness(smallest_support())); }
+  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed). In short
+  /// substeps the limit is up to twice as high, as the projections' jitter is faster.
+  Calm calm(double share) const {
+    return calm_under(share * std::sqrt(std::min(4.0, shortness())) * saliency.readings.calm_speed);
+  }
+  /// Degree of rest by the mean motion of the surroundings (the column Drift), with `share` times that
+  /// motion's limit speed (docs/decisions.md, "Boiling and waves", "Still water in short substeps").
   Calm drift_calm(double share) const {
     constexpr double of_still_speed = 0.45;
-    return calm_under(share * of_still_speed * static_cast<double>(parameters.still_speed));
+    const double raised = std::pow(shortness() * std::max(1.0, shortness() / 4), 0.25);
+    return calm_below(share * raised * of_still_speed * static_cast<double>(parameters.still_speed),
+                      static_cast<double>(parameters.gravity.strength),
+                      static_cast<double>(smallest_support()) / 2);
   }
   Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };

@@ -25,6 +25,7 @@ struct Demand {
   bool obstacles_meet = false;    ///< a free obstacle may meet another, or has friction
   bool settling = false;          ///< the water comes to rest before frame 0, behind the gate if there is one
   bool levels = false;            ///< particles split and merge
+  bool rests_by_drift = false;    ///< water of one level rests by its mean motion
   bool forced_targets = false;    ///< a test gives the target levels
   bool gaze_targets = false;      ///< saliency and targets are computed from the gaze alone
   bool saliency = false;          ///< saliency and targets are computed by ViP-Fluid, Eq. 1-9
@@ -173,6 +174,7 @@ Stage before_projections_stage();
 Stage velocity_stage();
 /// XSPH viscosity.
 Stage xsph_stage();
+Stage xsph_of_short_steps_stage();
 /// XSPH viscosity for methods that split and merge, with a filter of velocity changes near particles that
 /// just split or merged.
 Stage xsph_of_levels_stage();

@@ -10,9 +10,9 @@ namespace {
 
 /// v += (x* - (x + dt v)) / dt, with x* the predicted position: equal to v = (x* - x) / dt, but without the
 /// rounding of x if no projection moves the particle. The fourth component of the velocity becomes the degree
-/// of rest, 0 to 1. The viscosity pass reads it and resets it to 0. With levels, water is at rest if the mean
-/// motion of its surroundings (the column Drift) is slow. The particle's own speed does not count: in short
-/// substeps the projections make every particle jitter, at rest as in a wave.
+/// of rest, 0 to 1. The viscosity pass reads it and resets it to 0. With levels, and in short substeps, water
+/// is at rest if the mean motion of its surroundings (the column Drift) is slow. The particle's own speed
+/// does not count: in short substeps the projections make every particle jitter, at rest as in a wave.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
@@ -25,7 +25,7 @@ struct Advance {
   Vec4* kick;
   Brake brake;
   float dt;
-  const Vec4* drift;     ///< nullptr without levels
+  const Vec4* drift;     ///< nullptr if particles are at rest by their own speed
   Calm still;            ///< criterion of rest for the finest particles
   float finest_support;  ///< support of particles of level 0, m
   /// true: particles that were at rest before this substep's velocity change count as at rest too
@@ -61,20 +61,13 @@ using VelocityColumns =
                columns(Column::Velocity, Column::Position),
                columns(Column::VelocityNext, Column::Active, Column::Drift), columns(Column::PredictedNext)>;
 
-/// A substep counts as short if h / (g dt^2) is larger than this (docs/decisions.md, "Still water of one
-/// size").
-constexpr double short_from = 800;
-
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
-  const double gravity = static_cast<double>(k.gravity.strength);
-  const double dt = static_cast<double>(k.dt);
   // The projections leave a jitter of a small share of the spacing d, which is a speed in proportion to d /
   // dt. In short substeps this speed would exceed the limit below which particles count as at rest, so the
   // limit is raised.
-  const double shorter =
-      gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
-  const bool drifts = p.has(Column::Drift) && !state.one_level;
+  const double shorter = k.shortness(state.finest_support);
+  const bool drifts = p.has(Column::Drift) && (!state.one_level || state.one_level_rests_by_drift);
   const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);
   // PredictedNext stores the velocity changes, because its positions are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;

@@ -30,20 +30,24 @@ struct DriftAverage {
   }
 };
 
-/// Filters of velocities in addition to the viscosity. Runs without splits and merges use NoFilter;
-/// docs/decisions.md, "Still water of one size", describes how their water comes to rest. Runs with splits
-/// and merges use RestingWater. New particles of a split or a merge overlap their neighbours. The projections
-/// separate them, and the velocity of this separation is not a motion of the fluid. So velocity changes near
-/// new particles are averaged over neighbours. The average conserves momentum, and does not alter changes
-/// that all particles share, such as those by gravity and pressure. Splits and merges also lift the water a
-/// little. It sinks back for a second or two, which sets it in motion, and an additional viscosity of water
-/// at rest damps this motion. Water that moved before is filtered less and gets no additional viscosity,
-/// because it would lose energy.
+/// Filters of velocities in addition to the viscosity. Runs without splits and merges use NoFilter, or
+/// AverageOnly in short substeps; docs/decisions.md, "Still water of one size", describes how their water
+/// comes to rest. Runs with splits and merges use RestingWater. New particles of a split or a merge overlap
+/// their neighbours. The projections separate them, and the velocity of this separation is not a motion of
+/// the fluid. So velocity changes near new particles are averaged over neighbours. The average conserves
+/// momentum, and does not alter changes that all particles share, such as those by gravity and pressure.
+/// Splits and merges also lift the water a little. It sinks back for a second or two, which sets it in
+/// motion, and an additional viscosity of water at rest damps this motion. Water that moved before is
+/// filtered less and gets no additional viscosity, because it would lose energy.
 struct NoFilter {
-  static constexpr bool filters = false;
+  static constexpr bool filters = false, averages = false;
+};
+struct AverageOnly {
+  static constexpr bool filters = false, averages = true;
+  DriftAverage average;
 };
 struct RestingWater {
-  static constexpr bool filters = true;
+  static constexpr bool filters = true, averages = true;
   const Vec4* kick;
   const float* ease;
   float strength;
@@ -96,7 +100,7 @@ struct Xsph {
     float spread;    ///< 22 nu times the time since it was last solved, m2
     Vec4 kick{};     ///< velocity change in the substep; only with a filter
     float rest = 0;  ///< degree of rest before this change; only with a filter
-    Vec4 drift{};    ///< only with a filter
+    Vec4 drift{};    ///< only with an average
   };
 
   /// Adds particle j to the change of velocity and, if Mixes, to the change d of the average Drift; a
@@ -143,7 +147,7 @@ struct Xsph {
     if constexpr (!Selection::everyone) {
       if (i < 0) {
         next[~i] = with_w(xyz(velocity[~i]), 0);
-        if constexpr (Filter::filters) filter.average.next[~i] = filter.average.drift[~i];
+        if constexpr (Filter::averages) filter.average.next[~i] = filter.average.drift[~i];
         return;
       }
     }
@@ -152,8 +156,8 @@ struct Xsph {
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
       me.rest = filter.rest(own, i);
-      me.drift = filter.average.drift[i];
     }
+    if constexpr (Filter::averages) me.drift = filter.average.drift[i];
     float vx = 0;
     float vy = 0;
     float vz = 0;
@@ -164,7 +168,7 @@ struct Xsph {
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
     bool mixes = false;
-    if constexpr (Filter::filters) {
+    if constexpr (Filter::averages) {
       mixes = me.drift.w < filter.average.fast;
       if (mixes) {
         SIM_LANES(vx, vy, vz, dx, dy, dz, dw)
@@ -188,7 +192,7 @@ struct Xsph {
     // Volume m_i / rho_0; densities are relative to rho_0.
     const float scale = 2 * mass_of(me.at.w, 1);
     next[i] = {own.x + scale * vx, own.y + scale * vy, own.z + scale * vz, 0};
-    if constexpr (Filter::filters) {
+    if constexpr (Filter::averages) {
       const DriftAverage& average = filter.average;
       const float mixed = average.mixed * scale;
       const Vec4 was = me.drift;
@@ -228,14 +232,18 @@ void run_xsph(FluidState& state, XsphColumns p) {
   state.one_level ? launch<true>(state, p, NoFilter{}) : launch<false>(state, p, NoFilter{});
 }
 
+using AverageView =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours,
+                       Column::Drift),
+               columns(Column::VelocityNext, Column::Velocity, Column::Drift, Column::Normal)>;
 using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours,
                                       Column::Ease, Column::PredictedNext, Column::Drift),
                               columns(Column::VelocityNext, Column::Velocity, Column::Drift, Column::Normal)>;
 
-/// Time scales of the average Drift, in sqrt(d_* / g) with the finest spacing d_*: the average follows the
-/// velocity within `follow`; a largest square fades within `keep`, so that a wave still counts as moving when
-/// it turns; within `mix` the average of one place spreads to its neighbours (docs/decisions.md, "Boiling and
-/// waves").
+/// Time scales of the average Drift, in sqrt(d / g) with the smallest spacing d of the run: the average
+/// follows the velocity within `follow`; a largest square fades within `keep`, so that a wave still counts as
+/// moving when it turns; within `mix` the average of one place spreads to its neighbours (docs/decisions.md,
+/// "Boiling and waves").
 struct DriftTimes {
   static constexpr double follow = 2.5, keep = 12, mix = 0.05;
 };
@@ -247,14 +255,29 @@ constexpr double fast_from = 4;
 float share_of(const FluidState& state, double time) {
   const double g = static_cast<double>(state.parameters.gravity.strength);
   if (!(g > 0)) return 0;
-  const double unit = std::sqrt(static_cast<double>(state.finest_support) / 2 / g);
+  const double unit = std::sqrt(static_cast<double>(state.smallest_support()) / 2 / g);
   return static_cast<float>(std::min(1.0, static_cast<double>(state.parameters.dt) / (time * unit)));
+}
+
+DriftAverage average_of(const FluidState& state, AverageView p) {
+  const Calm fast = state.drift_calm(fast_from);
+  return {.drift = p.drift(),
+          .next = p.normal(),
+          .mixed = share_of(state, DriftTimes::mix),
+          .followed = share_of(state, DriftTimes::follow),
+          .kept = 1 - share_of(state, DriftTimes::keep),
+          .fast = fast.most > 0 ? 1 / fast.inverse_square : 0};
+}
+
+void run_average(FluidState& state, AverageView p) {
+  const AverageOnly filter{average_of(state, p)};
+  state.one_level ? launch<true>(state, p, filter) : launch<false>(state, p, filter);
+  p.swap<Column::Drift, Column::Normal>();
 }
 
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
   const Calm calm = state.calm(1);
-  const Calm fast = state.drift_calm(fast_from);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
                              .ease = p.ease(),
@@ -262,12 +285,7 @@ void run_levels(FluidState& state, LevelsView p) {
                              .calm = calm,
                              .in_motion = calm.most > 0 ? 0.4f : 1,
                              .viscosity = rules.calm_viscosity,
-                             .average = {.drift = p.drift(),
-                                         .next = p.normal(),
-                                         .mixed = share_of(state, DriftTimes::mix),
-                                         .followed = share_of(state, DriftTimes::follow),
-                                         .kept = 1 - share_of(state, DriftTimes::keep),
-                                         .fast = fast.most > 0 ? 1 / fast.inverse_square : 0}});
+                             .average = average_of(state, p)});
   p.swap<Column::Drift, Column::Normal>();
 }
 
@@ -279,13 +297,25 @@ Stage xsph_stage() {
                              .phase = Phase::SubstepEnd,
                              .called_for = [](const Demand& demand) -> std::string {
                                const SolverParameters& k = demand.parameters;
-                               if (demand.levels) return "";
+                               if (demand.levels || demand.rests_by_drift) return "";
                                if (k.viscosity > 0) return "viscosity > 0";
                                return k.still_speed > 0 && k.gravity.strength > 0
                                           ? "gravity: water can be still"
                                           : "";
                              },
                              .changes = Change::Viscosity});
+}
+
+Stage xsph_of_short_steps_stage() {
+  return stage_of<run_average>({.name = "xsph of short steps",
+                                .source = "Monaghan 1989, with the average by which water is at rest",
+                                .phase = Phase::SubstepEnd,
+                                .called_for = [](const Demand& demand) -> std::string {
+                                  return demand.rests_by_drift && !demand.levels
+                                             ? "short substeps: jitter is faster than waves"
+                                             : "";
+                                },
+                                .changes = Change::Viscosity});
 }
 
 Stage xsph_of_levels_stage() {
