@@ -58,8 +58,7 @@ Camera camera(const base::TomlTable& table, const Vec3d& origin_m) {
   out.target_m = place(table, "target_m", origin_m);
   out.vertical_fov_deg = table.number("vertical_fov_deg", {1, 170});
   out.near_m = table.number("near_m", {1e-3, 10});
-  const double dx = out.target_m[0] - out.eye_m[0];
-  const double dz = out.target_m[2] - out.eye_m[2];
+  const double dx = out.target_m[0] - out.eye_m[0], dz = out.target_m[2] - out.eye_m[2];
   if (std::hypot(dx, dz) < 1e-6)
     table.fail("target_m", "lies straight above or below the eye", "move it sideways");
   return out;
@@ -292,14 +291,18 @@ void check_expansion(const base::TomlTable& root, const Scene& scene) {
             "reference_k closer together");
 }
 
+std::string read_name(const base::TomlTable& table) {
+  std::string out = table.string("name");
+  if (out.empty() || out.size() > 64 || !base::is_plain_line(out))
+    table.fail("name", "is empty or too long, or holds a control character", "use 1 to 64 bytes of one line");
+  return out;
+}
+
 std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& origin_m) {
   std::vector<VisibleBox> out;
   for (const auto& table : root.tables("visible")) {
-    VisibleBox box{table.string("name"), {}, {}};
-    if (const auto size = box.name.size(); size < 1 || size > 64)
-      table.fail("name", "is empty or too long: " + std::to_string(size) + " bytes", "use 1 to 64 bytes");
-    read_box(table, origin_m, box);
-    out.push_back(std::move(box));
+    out.push_back({read_name(table), {}, {}});
+    read_box(table, origin_m, out.back());
   }
   return out;
 }
@@ -309,8 +312,7 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 Vec3d Gravity::up() const {
   const double all = size();
   if (!(all > 0)) return {0, 1, 0};
-  // 0 - a instead of -a: the result is +0, not -0, for a component of 0.
-  return {0 - along[0] / all, 0 - along[1] / all, 0 - along[2] / all};
+  return {0 - along[0] / all, 0 - along[1] / all, 0 - along[2] / all};  // 0 - a: +0, not -0, for a = 0
 }
 
 Scene parse_scene(std::string_view text, const std::string& name,
@@ -326,9 +328,7 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
     root.fail("format", "= " + std::to_string(format) + " is not a format that this program reads (1 or 2)",
               "use the version of ViP-Lab for which the file was written");
   Scene scene;
-  scene.name = root.string("name");
-  if (const auto size = scene.name.size(); size < 1 || size > 64)
-    root.fail("name", "is empty or too long: " + std::to_string(size) + " bytes", "use 1 to 64 bytes");
+  scene.name = read_name(root);
   scene.gravity_m_s2 = read_gravity(root);
   for (const double frame : root.numbers("checkpoints", 0, {0, 1e6})) {
     if (frame != std::floor(frame)) root.fail("checkpoints", "holds a fraction", "write whole frames");

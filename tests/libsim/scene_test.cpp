@@ -60,6 +60,15 @@ TEST(Scene, DeclaresWhatMustStayVisible) {
               testing::HasSubstr("is empty or too long"));
 }
 
+TEST(Scene, RefusesANameOfTwoLines) {
+  for (const std::string& text :
+       {replaced(dam_text(), "name = \"SingleDam\"", "name = \"Single\\nDam\""),
+        dam_text() +
+            "\n[[visible]]\nname = \"a\\u0007b\"\nmin_m = [1.0, 0.0, 2.0]\nmax_m = [2.0, 3.0, 4.0]\n"})
+    EXPECT_THAT(error_of(text),
+                testing::AllOf(testing::HasSubstr("name"), testing::HasSubstr("holds a control character")));
+}
+
 TEST(Scene, SettlesForSecondsAtTheFrameRateOfTheFile) {
   const auto frames = [](const std::string& settling, const std::string& rate = "60.0") {
     const auto text = replaced(dam_text(), "settle_frames = 120", settling);

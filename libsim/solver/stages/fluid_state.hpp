@@ -325,7 +325,7 @@ struct FluidState {
   /// motion's limit speed (docs/decisions.md, "Boiling and waves", "Still water in short substeps").
   Calm drift_calm(double share) const {
     constexpr double of_still_speed = 0.45;
-    const double raised = std::pow(shortness() * std::max(1.0, shortness() / 4), 0.25);
+    const double raised = std::sqrt(std::max(std::min(shortness(), 2.0), shortness() / 2));
     return calm_below(share * raised * of_still_speed * static_cast<double>(parameters.still_speed),
                       static_cast<double>(parameters.gravity.strength),
                       static_cast<double>(smallest_support()) / 2);
