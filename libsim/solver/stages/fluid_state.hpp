@@ -316,11 +316,8 @@ struct FluidState {
   float smallest_support() const { return std::max(finest_support, lightest_support); }
   /// SolverParameters::shortness() of the smallest particles, at least 1.
   double shortness() const { return std::max(1.0, parameters.shortness(smallest_support())); }
-  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed). In short
-  /// substeps the limit is up to twice as high, as the projections' jitter is faster.
-  Calm calm(double share) const {
-    return calm_under(share * std::sqrt(std::min(4.0, shortness())) * saliency.readings.calm_speed);
-  }
+  /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
+  Calm calm(double share) const { return calm_under(share * saliency.readings.calm_speed); }
   /// Degree of rest by the mean motion of the surroundings (the column Drift), with `share` times that
   /// motion's limit speed (docs/decisions.md, "Boiling and waves", "Still water in short substeps").
   Calm drift_calm(double share) const {
