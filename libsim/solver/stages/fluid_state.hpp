@@ -318,6 +318,9 @@ struct FluidState {
   double shortness() const { return std::max(1.0, parameters.shortness(smallest_support())); }
   /// Degree of rest with `share` times the limit speed of water at rest (Readings::calm_speed).
   Calm calm(double share) const { return calm_under(share * saliency.readings.calm_speed); }
+  /// The same for splits and merges: in short substeps the limit is up to twice as high, as the projections'
+  /// jitter is faster.
+  Calm calm_for_events(double share) const { return calm(share * std::sqrt(std::min(4.0, shortness()))); }
   /// Degree of rest by the mean motion of the surroundings (the column Drift), with `share` times that
   /// motion's limit speed (docs/decisions.md, "Boiling and waves", "Still water in short substeps").
   Calm drift_calm(double share) const {

@@ -186,7 +186,7 @@ void run_graded_targets(FluidState& state, GradedTargetsColumns p) {
                   .saliency = p.saliency(),
                   .target = p.target(),
                   .velocity = p.velocity(),
-                  .rest = {state.calm(LevelRest::fades_at)},
+                  .rest = {state.calm_for_events(LevelRest::fades_at)},
                   .levels = static_cast<float>(rules.coarsest + 1),
                   .dead_band = rules.dead_band,
                   .calm_dead_band = rules.calm_dead_band});

@@ -108,7 +108,7 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
                 ListBesideFresh<Selection>{.select = select,
                                            .ease = p.ease(),
                                            .velocity = p.velocity(),
-                                           .slow = state.calm(0.5),
+                                           .slow = state.calm_for_events(0.5),
                                            .least = levels.rules.ease[0],
                                            .widely = widely,
                                            .neighbours = state.neighbours.view(),
