@@ -57,6 +57,8 @@ struct RestingWater {
   /// gravity or with Readings::calm_speed 0, the share is 1.
   float in_motion;
   float viscosity;  ///< additional viscosity of water at rest, as a multiple of the fluid's viscosity
+  /// a^2 - 1 if `calm` has a times the limit speed of calm_speed: the viscosity falls to 0 at this speed
+  float steeper;
   DriftAverage average;
 
   /// Degree to which the particle was at rest before the substep's velocity change (kick).
@@ -119,7 +121,7 @@ struct Xsph {
     float thicker = 1;
     if constexpr (Filter::filters) {
       const float resting = at_most(me.rest, filter.rest(v, j));
-      thicker += filter.viscosity * resting;
+      thicker += filter.viscosity * at_least(resting - filter.steeper * (1 - resting), 0.0f);
       const float share = filter.share(me.i, j, resting) * weight;
       const Vec4 kick = filter.kick[j];
       vx += share * (kick.x - me.kick.x);
@@ -277,7 +279,7 @@ void run_average(FluidState& state, AverageView p) {
 
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
-  const Calm calm = state.calm(1);
+  const Calm calm = state.calm_for_events(1);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
                              .ease = p.ease(),
@@ -285,6 +287,7 @@ void run_levels(FluidState& state, LevelsView p) {
                              .calm = calm,
                              .in_motion = calm.most > 0 ? 0.4f : 1,
                              .viscosity = rules.calm_viscosity,
+                             .steeper = static_cast<float>(std::min(4.0, state.shortness()) - 1),
                              .average = average_of(state, p)});
   p.swap<Column::Drift, Column::Normal>();
 }
