@@ -27,7 +27,7 @@ struct Displace {
   /// Adds particle j to the step; a separate function, so that the loop vectorises (SIM_LANES). own: lambda
   /// of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
-                  float& pz, int& close) const {
+                  float& pz, int& zero) const {
     const Vec4 other = predicted[j];
     const Kernel kernel = pair.with(other.w);
     const float dx = self.x - other.x;
@@ -35,7 +35,7 @@ struct Displace {
     const float dz = self.z - other.z;
     const float r2 = dx * dx + dy * dy + dz * dz;
     const float least = coincident * kernel.h;
-    close += r2 < too_close * too_close * kernel.h2;
+    zero += r2 < least * least;
     const Root root(at_least(r2, least * least));
     float push = pair.mass_ratio(other.w) * own + lambda[j];
     if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
@@ -58,21 +58,24 @@ struct Displace {
     float px = 0;
     float py = 0;
     float pz = 0;
-    int close = 0;
+    int zero = 0;
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(px, py, pz, close)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, own, px, py, pz, close);
+    SIM_LANES(px, py, pz, zero)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, own, px, py, pz, zero);
     px = team.sum(px);
     py = team.sum(py);
     pz = team.sum(pz);
-    close = team.sum(close);
+    zero = team.sum(zero);
     if (team.rank() > 0) return;
     Vec3 wall_gradient;
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
     Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
-    if (close) x += parted(slot, self, own);
+    if (zero) {
+      x += parted(slot, self, own);
+      Witness{guards, id, half}.note(Trouble::Coincident, i);
+    }
     // The momentum term repeats a share of the last projection's step: `next` still contains the positions
     // before that projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
@@ -90,34 +93,25 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// Step that separates particle i from particles that are too close to it, by a tenth of the missing
-  /// distance. Where particles are in one place, their offset has no direction, so that their ids determine
-  /// the step's direction. That step is never zero, even if the density alone would not separate the
-  /// particles. Steps are weighted so that a pair's centre of mass does not move.
+  /// Step that separates particle i from particles at the same position. The offset between such particles
+  /// has no direction, so their ids determine the step's direction. The step is never zero, even if the
+  /// density alone would not separate the particles.
+  /// Steps are weighted so that a pair's centre of mass does not move.
   SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);
-    const int i = select(slot);
-    bool in_one_place = false;
     Vec3 step{0, 0, 0};
     for (int k = 0; k < neighbours.size(slot); ++k) {
       const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const Vec3 offset = xyz(self) - xyz(other);
-      const float r2 = dot(offset, offset);
       const float least = coincident * kernel.h;
+      if (dot(offset, offset) >= least * least) continue;
       const float ratio = pair.mass_ratio(other.w);
-      const float share = ratio / (1 + ratio);
-      if (r2 < least * least) {
-        in_one_place = true;
-        const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
-        step += (pressed + 0.1f * kernel.h * share) * parting_direction(id[i], id[j]);
-      } else if (r2 < too_close * too_close * kernel.h2) {
-        const float r = sqrtf(r2);
-        step += (0.1f * (too_close * kernel.h - r) * share / r) * offset;
-      }
+      const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
+      const float apart = 0.05f * kernel.h * 2 * ratio / (1 + ratio);
+      step += (pressed + apart) * parting_direction(id[select(slot)], id[j]);
     }
-    if (in_one_place) Witness{guards, id, half}.note(Trouble::Coincident, i);
     return step;
   }
 };
