@@ -40,7 +40,7 @@ float water_length(vec2 xy) {
   return mix(a, b, f.y) * thickness_rule.y;
 }
 
-// A vector of eye space as (pixel coordinates x depth, depth).
+// Projects a vector of eye space: x and y of the result are pixel coordinates times depth, z is the depth.
 vec3 in_pixels(vec3 v) { return vec3((v.xy + v.z * rays.yw) / rays.xz, -v.z); }
 
 // Water in the picture that a mirrored ray meets: x: how much of the ray it takes, 0 to 1; y: its length along the

@@ -55,15 +55,15 @@ Outcome dam(const Setting& setting) {
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);
   for (int frame = 0; frame < frames && watch.step(); ++frame) error += watch.report().density_error_mean;
   const GuardCounts& met = watch.report().guards;
-  const auto nobody = [](const char* name, std::uint64_t count) {
+  const auto none = [](const char* name, std::uint64_t count) {
     return at_most(name, static_cast<double>(count), 0);
   };
   Finding density = watch.density_finding();
   Finding mostly = at_most("rho / rho_0 in 95 % of the frames", watch.densest_in(0.95), 1.2);
-  Finding braked = nobody("braked", met.speed_limited);
+  Finding braked = none("braked", met.speed_limited);
   // The limit is not 0: in runs of some 1e9 particle-substeps on an H200, neighbours pressed one or two pairs
   // of particles into one place, which the next projection parted (docs/decisions.md, "Close pairs").
-  Finding coincident = nobody("coincident pairs", met.coincident_pairs);
+  Finding coincident = none("coincident pairs", met.coincident_pairs);
   if (setting.size == Size::Full) {
     coincident.limit = 20;
     coincident.asked = 0;
@@ -82,8 +82,8 @@ Outcome dam(const Setting& setting) {
     braked.asked = 0;
   }
   return watch.outcome({density, mostly, watch.outside_finding(), braked,
-                        nobody("neighbours dropped", met.neighbours_dropped), coincident,
-                        nobody("frames short of substeps", static_cast<std::uint64_t>(watch.short_frames())),
+                        none("neighbours dropped", met.neighbours_dropped), coincident,
+                        none("frames short of substeps", static_cast<std::uint64_t>(watch.short_frames())),
                         reported("mean density error", error / std::max(1, watch.frame())),
                         reported("fastest", watch.fastest_m_s(), "m/s")});
 }

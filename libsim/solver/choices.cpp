@@ -213,7 +213,7 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
                  const SolverParameters& parameters) {
   const double d = resolution.finest_spacing_m;
   // Settled water without gravity counts as at rest if it moves by less than a tenth of a spacing in a frame.
-  // Projections, splits and merges move it that far.
+  // Errors of projections, splits and merges move particles by up to that distance.
   const bool still = scene.gravity_m_s2.size() <= 0 && fall_speed * parameters.frame_s() < 0.1 * d;
   if (still) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));

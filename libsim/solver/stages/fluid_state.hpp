@@ -56,9 +56,9 @@ struct SolverParameters {
   /// Minimum distance of a particle to a wall, as a share of the particle's spacing.
   float wall_gap = 0.1f;
 
-  /// h / (800 g dt^2) of particles with support h, m; 0 without gravity. Above 1 a substep counts as short:
-  /// the speed of the projections' jitter, a share of d / dt, is then large compared with sqrt(g d)
-  /// (docs/decisions.md, "Still water of one size").
+  /// How short a substep is for particles of support h, m: h / (800 g dt^2), or 0 without gravity. Above 1
+  /// the substep counts as short. The projections make particles jitter at a share of d / dt, and in short
+  /// substeps that is large compared with sqrt(g d) (docs/decisions.md, "Still water of one size").
   double shortness(float support) const {
     const double g = static_cast<double>(gravity.strength), step = static_cast<double>(dt);
     return g > 0 ? static_cast<double>(support) / (g * step * step * 800) : 0;

@@ -30,15 +30,17 @@ struct DriftAverage {
   }
 };
 
-/// Filters of velocities in addition to the viscosity. Runs without splits and merges use NoFilter, or
-/// AverageOnly in short substeps; docs/decisions.md, "Still water of one size", describes how their water
-/// comes to rest. Runs with splits and merges use RestingWater. New particles of a split or a merge overlap
-/// their neighbours. The projections separate them, and the velocity of this separation is not a motion of
-/// the fluid. So velocity changes near new particles are averaged over neighbours. The average conserves
-/// momentum, and does not alter changes that all particles share, such as those by gravity and pressure.
-/// Splits and merges also lift the water a little. It sinks back for a second or two, which sets it in
-/// motion, and an additional viscosity of water at rest damps this motion. Water that moved before is
-/// filtered less and gets no additional viscosity, because it would lose energy.
+/// What the viscosity pass does besides viscosity. Without levels it does nothing more (NoFilter), except in
+/// short substeps, where it also updates the average motion (AverageOnly). docs/decisions.md, "Still water of
+/// one size" and "Still water in short substeps", describes how that water comes to rest.
+///
+/// With levels it also filters velocities (RestingWater). A new particle of a split or a merge overlaps its
+/// neighbours. The projections push them apart, and the speed of that push is an error. So the pass averages
+/// velocity changes near new particles over neighbours. The average conserves momentum, and keeps changes
+/// that all particles share, such as those by gravity and pressure. Splits and merges also raise the water's
+/// surface a little. The water then sinks for a second or two, and gains speed. More viscosity where water is
+/// at rest removes that speed. Where water moved before, the filter is weaker and the viscosity is the usual
+/// one, as the water would lose energy.
 struct NoFilter {
   static constexpr bool filters = false, averages = false;
 };
