@@ -16,6 +16,9 @@ inline constexpr float pi = 3.14159265358979f;
 inline constexpr float lattice_density = 103950.0f / (32768.0f * pi);
 /// Pairs closer than this share of h count as coincident.
 inline constexpr float coincident = 1e-5f;
+/// Pairs closer than this share of h are pushed apart even where the density asks for nothing. Two particles
+/// of too low a density do not push each other, so that their neighbours would press them into one place.
+inline constexpr float too_close = 1e-3f;
 
 /// Kernels for one support radius.
 struct Kernel {

@@ -16,9 +16,13 @@ struct Displace {
   Neighbours neighbours;
   Boundary walls;
   Vec4* next;
+  /// positions at the substep's beginning; pushes between close particles move them too, so that these pushes
+  /// add no velocity. nullptr: pushes move predicted positions only
+  Vec4* start;
   Guards* guards;
   int half;  ///< time of this pass, in half substeps since the frame's start (TroubleKey::of)
   float rest_density, tensile, wall_gap, momentum;
+  float times;  ///< total factor on a step of this projection (times_taken())
 
 #ifdef SIM_CUDA
   int lanes(int n) const { return team_wish_of_projections(n, OneLevel); }
@@ -27,7 +31,7 @@ struct Displace {
   /// Adds particle j to the step; a separate function, so that the loop vectorises (SIM_LANES). own: lambda
   /// of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
-                  float& pz, int& zero) const {
+                  float& pz, int& close) const {
     const Vec4 other = predicted[j];
     const Kernel kernel = pair.with(other.w);
     const float dx = self.x - other.x;
@@ -35,7 +39,7 @@ struct Displace {
     const float dz = self.z - other.z;
     const float r2 = dx * dx + dy * dy + dz * dz;
     const float least = coincident * kernel.h;
-    zero += r2 < least * least;
+    close += r2 < too_close * too_close * kernel.h2;
     const Root root(at_least(r2, least * least));
     float push = pair.mass_ratio(other.w) * own + lambda[j];
     if constexpr (Tensile) push += tensile_term(kernel, r2, other.w);
@@ -58,23 +62,25 @@ struct Displace {
     float px = 0;
     float py = 0;
     float pz = 0;
-    int zero = 0;
+    int close = 0;
     const int count = neighbours.size(slot);
     const NeighbourRun run = neighbours.run(slot);
-    SIM_LANES(px, py, pz, zero)
-    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, own, px, py, pz, zero);
+    SIM_LANES(px, py, pz, close)
+    for (int k = team.rank(); k < count; k += Team::size) add(run[k], self, pair, own, px, py, pz, close);
     px = team.sum(px);
     py = team.sum(py);
     pz = team.sum(pz);
-    zero = team.sum(zero);
+    close = team.sum(close);
     if (team.rank() > 0) return;
     Vec3 wall_gradient;
     walls.missing(xyz(self), self.w, wall_gradient);
     const float mass = mass_of(self.w, rest_density);
     Vec3 x = xyz(self) + (1 / rest_density) * Vec3{px, py, pz} + (own / mass) * wall_gradient;
-    if (zero) {
-      x += parted(slot, self, own);
-      Witness{guards, id, half}.note(Trouble::Coincident, i);
+    if (close) {
+      const Parting parting = parted(slot, self, own);
+      x += parting.step + parting.push;
+      if (start) start[i] = with_w(xyz(start[i]) + times * parting.push, start[i].w);
+      if (parting.in_one_place) Witness{guards, id, half}.note(Trouble::Coincident, i);
     }
     // The momentum term repeats a share of the last projection's step: `next` still contains the positions
     // before that projection.
@@ -93,31 +99,44 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// Step that separates particle i from particles at the same position. The offset between such particles
-  /// has no direction, so their ids determine the step's direction. The step is never zero, even if the
-  /// density alone would not separate the particles.
-  /// Steps are weighted so that a pair's centre of mass does not move.
-  SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
-    const PairKernel<OneLevel> pair(self.w);
+  /// How particle i leaves particles that are too close to it. Both parts are weighted so that a pair's
+  /// centre of mass does not move.
+  struct Parting {
+    /// from particles at the same position: adds velocity, and is never zero, even if the density alone would
+    /// not separate the particles
     Vec3 step{0, 0, 0};
+    Vec3 push{0, 0, 0};  ///< from other close particles: a tenth of the missing distance; adds no velocity
+    bool in_one_place = false;
+  };
+  SIM_FN Parting parted(int slot, Vec4 self, float own) const {
+    const PairKernel<OneLevel> pair(self.w);
+    Parting out;
     for (int k = 0; k < neighbours.size(slot); ++k) {
       const int j = neighbours(slot, k);
       const Vec4 other = predicted[j];
       const Kernel kernel = pair.with(other.w);
       const Vec3 offset = xyz(self) - xyz(other);
+      const float r2 = dot(offset, offset);
+      if (r2 >= too_close * too_close * kernel.h2) continue;
       const float least = coincident * kernel.h;
-      if (dot(offset, offset) >= least * least) continue;
       const float ratio = pair.mass_ratio(other.w);
+      if (r2 >= least * least) {
+        const float r = sqrtf(r2);
+        out.push += (0.1f * (too_close * kernel.h - r) * ratio / (1 + ratio) / r) * offset;
+        continue;
+      }
+      // The offset has no direction, so the ids determine the step's direction.
+      out.in_one_place = true;
       const float pressed = -(ratio * own + lambda[j]) * kernel.slope(least) / rest_density;
       const float apart = 0.05f * kernel.h * 2 * ratio / (1 + ratio);
-      step += (pressed + apart) * parting_direction(id[select(slot)], id[j]);
+      out.step += (pressed + apart) * parting_direction(id[select(slot)], id[j]);
     }
-    return step;
+    return out;
   }
 };
 
 template <bool OneLevel, bool Tensile, class Selection, class Boundary>
-void launch(FluidState& state, DisplacementView p, Selection select, Boundary boundary) {
+void launch(FluidState& state, DisplacementView p, Vec4* start, Selection select, Boundary boundary) {
   const auto& k = state.parameters;
   for_each_team(
       few_in<Selection> ? "displacement beside fresh" : "displacement", p.size(),
@@ -128,46 +147,52 @@ void launch(FluidState& state, DisplacementView p, Selection select, Boundary bo
                                                        .neighbours = state.neighbours.view(),
                                                        .walls = boundary,
                                                        .next = p.predicted_next(),
+                                                       .start = start,
                                                        .guards = state.guard(),
                                                        .half = 2 * state.substep,
                                                        .rest_density = k.rest_density,
                                                        .tensile = k.tensile,
                                                        .wall_gap = gap_of_kernels(state),
-                                                       .momentum = state.iteration > 0 ? k.momentum : 0.0f});
+                                                       .momentum = state.iteration > 0 ? k.momentum : 0.0f,
+                                                       .times = times_taken(k, state.iteration)});
 }
 
 template <bool OneLevel, bool Tensile, class Selection>
-void launch(FluidState& state, DisplacementView p, Selection select) {
+void launch(FluidState& state, DisplacementView p, Vec4* start, Selection select) {
   const auto& k = state.parameters;
-  state.obstacles.exists() ? launch<OneLevel, Tensile>(state, p, select, state.solids())
-                           : launch<OneLevel, Tensile>(state, p, select, state.walls);
+  state.obstacles.exists() ? launch<OneLevel, Tensile>(state, p, start, select, state.solids())
+                           : launch<OneLevel, Tensile>(state, p, start, select, state.walls);
   p.swap<Column::Predicted, Column::PredictedNext>();
   clamp_and_listen(state, p, p.predicted_next(), times_taken(k, state.iteration), false);
 }
 
 template <bool OneLevel, class Selection>
-void launch(FluidState& state, DisplacementView p, Selection select) {
-  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, p, select)
-                               : launch<OneLevel, false>(state, p, select);
+void launch(FluidState& state, DisplacementView p, Vec4* start, Selection select) {
+  state.parameters.tensile > 0 ? launch<OneLevel, true>(state, p, start, select)
+                               : launch<OneLevel, false>(state, p, start, select);
 }
 
 template <class Selection>
-void launch(FluidState& state, DisplacementView p, Selection select) {
-  state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
+void launch(FluidState& state, DisplacementView p, Vec4* start, Selection select) {
+  state.one_level ? launch<true>(state, p, start, select) : launch<false>(state, p, start, select);
 }
 
-void run_displacement(FluidState& state, DisplacementView p) { displace(state, p); }
+void launch(FluidState& state, DisplacementView p, Vec4* start) {
+  state.all_active ? launch(state, p, start, AllParticles{}) : launch(state, p, start, state.active());
+}
+
+using SubstepColumns = ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
+                                  columns(Column::PredictedNext, Column::Predicted, Column::Position)>;
+void run_displacement(FluidState& state, SubstepColumns p) { launch(state, p, p.position()); }
 
 }  // namespace
 
-void displace(FluidState& state, DisplacementView p) {
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
-}
+void displace(FluidState& state, DisplacementView p) { launch(state, p, nullptr); }
 void displace(FluidState& state, DisplacementView p, Listed<AllParticles> few) {
-  launch<false>(state, p, few);
+  launch<false>(state, p, nullptr, few);
 }
 void displace(FluidState& state, DisplacementView p, Listed<ActiveParticles> few) {
-  launch<false>(state, p, few);
+  launch<false>(state, p, nullptr, few);
 }
 
 Stage displacement_stage() {
