@@ -31,6 +31,7 @@ Readings readings_of(Preset preset) {
   out.normalisation = Normalisation::MinMax;
   out.calm_speed = 0;
   out.saliency_floor = 0;
+  out.drop_density = 0;
   out.graded_targets = false;
   std::fill_n(out.split_offset, 3, 0.794);
   out.split_share = 1;

@@ -35,6 +35,7 @@ struct ToLevels {
   float* saliency;
   std::uint8_t* target;
   Guards* guards;
+  Drops drops;
   SIM_FN void operator()(int i) const {
     float s = 0;
     if (!std::isfinite(combined[i])) {
@@ -44,7 +45,7 @@ struct ToLevels {
       s = fminf(fmaxf((combined[i] - range->low) / (range->high - range->low), 0.0f), 1.0f);
     }
     saliency[i] = s;
-    target[i] = static_cast<std::uint8_t>(level_of_saliency(s, levels));
+    target[i] = static_cast<std::uint8_t>(drops.at_most_own(i, level_of_saliency(s, levels)));
   }
 };
 
@@ -85,8 +86,8 @@ void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec
 }
 
 void saliency_to_levels(const float* combined, const SaliencyRange* range, int levels, float* saliency,
-                        std::uint8_t* target, Guards* guards, int n) {
-  for_each("saliency to levels", n, ToLevels{combined, range, levels, saliency, target, guards});
+                        std::uint8_t* target, Guards* guards, Drops drops, int n) {
+  for_each("saliency to levels", n, ToLevels{combined, range, levels, saliency, target, guards, drops});
 }
 
 void gaze_to_levels(const Acuity& acuity, const Eyes& eyes, const Vec4* position, float band, int levels,
@@ -175,7 +176,8 @@ void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid) {
   }
   state.frames_since = anew ? 1 : state.frames_since + 1;
   saliency_to_levels(state.combined.data(), state.normaliser.range(), state.levels, fluid.saliency,
-                     fluid.target, fluid.guards, fluid.n);
+                     fluid.target, fluid.guards,
+                     {fluid.density, fluid.level, static_cast<float>(p.drop_density)}, fluid.n);
 }
 
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid) {

@@ -48,10 +48,22 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
 void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec4* position,
                       const float* temporal, float* combined, SaliencyParts* parts, int n);
 
+/// Particles in the air, alone or in twos and threes. Their targets are at most their levels, so that they do
+/// not merge: a merged drop is larger than the drops that it replaces, and the eye sees each of them.
+struct Drops {
+  const float* density = nullptr;       ///< rho / rho_0
+  const std::uint8_t* level = nullptr;  ///< of each particle
+  float below = 0;                      ///< share of rho_0 below which a particle is one; 0: none is
+
+  SIM_FN int at_most_own(int i, int target) const {
+    return below > 0 && density[i] < below && level[i] < target ? level[i] : target;
+  }
+};
+
 /// s and the target level from F. Particles whose F is not finite have s = 0 and are counted. If the range is
 /// not usable, particles with a finite F keep s and target.
 void saliency_to_levels(const float* combined, const SaliencyRange* range, int levels, float* saliency,
-                        std::uint8_t* target, Guards* guards, int n);
+                        std::uint8_t* target, Guards* guards, Drops drops, int n);
 
 /// s and the target level from the gaze alone (FovFluid-like): finest in the fovea of either eye, coarsest
 /// outside, with a transition band of width `band` (m) between.
@@ -97,7 +109,8 @@ struct SwirlSeen {
 struct SaliencyFluid {
   const Vec4* position = nullptr;
   const Vec4* velocity = nullptr;
-  const float* density = nullptr;  ///< rho / rho_0; read only if the temporal feature is measured
+  /// rho / rho_0; read only if the temporal feature is measured or Readings::drop_density is above 0
+  const float* density = nullptr;
   const std::uint8_t* level = nullptr;
   ParticleNeighbours neighbours{};
   int n = 0;

@@ -29,11 +29,11 @@ void add(std::ostream& text, const Readings& r) {
        << r.inactive_yield << ' ' << r.manifold_window_px << ' ' << static_cast<int>(r.gradient) << ' '
        << r.temporal_follow << ' ' << r.temporal_period_frames << ' ' << r.speed_floor << ' '
        << r.density_floor << ' ' << static_cast<int>(r.normalisation) << ' ' << r.saliency_floor << ' '
-       << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1] << ' ' << r.split_offset[2]
-       << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap << ' ' << r.merge_dead_band
-       << ' ' << r.kick_filter << ' ' << r.change_cell_spacings << ' ' << r.levels_period_frames << ' '
-       << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed << ' ' << r.calm_floor << ' '
-       << r.calm_dead_band << ' ' << r.calm_viscosity << '\n';
+       << r.drop_density << ' ' << r.gaze_hold_s << ' ' << r.split_offset[0] << ' ' << r.split_offset[1]
+       << ' ' << r.split_offset[2] << ' ' << r.split_share << ' ' << r.merge_reach << ' ' << r.merge_overlap
+       << ' ' << r.merge_dead_band << ' ' << r.kick_filter << ' ' << r.change_cell_spacings << ' '
+       << r.levels_period_frames << ' ' << r.saccade_deg << ' ' << r.saccade_frames << ' ' << r.calm_speed
+       << ' ' << r.calm_floor << ' ' << r.calm_dead_band << ' ' << r.calm_viscosity << '\n';
 }
 
 /// Adds the scene's hash. A scene that was not read from a file has no hash, so this adds also the scene's

@@ -56,7 +56,7 @@ void run_saliency(FluidState& state, SaliencyColumns p) {
     ++state.saliency.frames_since;
     return;
   }
-  recall_surroundings(state, p, state.saliency.due());
+  recall_surroundings(state, p, state.saliency.due() || state.saliency.readings.drop_density > 0);
   SaliencyFluid fluid = fluid_of(state, p);
   fluid.unrest = p.unrest();
   const auto& effects = state.parameters.effects;

@@ -31,7 +31,7 @@ Judged judge(const std::vector<float>& F, SaliencyNormaliser& normaliser, Normal
   Array<std::uint8_t> own;
   own.from_host(std::vector<std::uint8_t>(F.size(), 0));
   normaliser.update(combined, own.data(), n, reading);
-  saliency_to_levels(combined.data(), normaliser.range(), 4, s.data(), target.data(), guards.data(), n);
+  saliency_to_levels(combined.data(), normaliser.range(), 4, s.data(), target.data(), guards.data(), {}, n);
   const auto levels = target.to_host();
   SaliencyRange range;
   copy_to_host(&range, normaliser.range(), sizeof range);
@@ -110,6 +110,29 @@ SIM_TEST(SaliencyLevels, WhereNothingStandsOutNothingIsFullySalient) {
   SaliencyRange range;
   copy_to_host(&range, normaliser.range(), sizeof range);
   EXPECT_EQ(range.high, 0.1f);
+}
+
+SIM_TEST(SaliencyLevels, DropsDoNotMerge) {
+  // All have the least saliency, so that Eq. 9 wants level 3. rho / rho_0 of a drop is below 0.4.
+  const auto targets = [](float below) {
+    Array<float> combined, s, density;
+    combined.from_host({0, 0, 0, 0, 0});
+    s.from_host({0, 0, 0, 0, 0});
+    density.from_host({0.2f, 0.39f, 0.4f, 0.9f, 0.2f});
+    Array<std::uint8_t> level, target;
+    level.from_host({0, 1, 0, 0, 3});
+    target.from_host({9, 9, 9, 9, 9});
+    Array<SaliencyRange> range(1);
+    range.from_host({SaliencyRange{.low = 0, .high = 1, .usable = 1}});
+    Array<Guards> guards(1);
+    guards.zero();
+    saliency_to_levels(combined.data(), range.data(), 4, s.data(), target.data(), guards.data(),
+                       {density.data(), level.data(), below}, 5);
+    const auto found = target.to_host();
+    return std::vector<int>(found.begin(), found.end());
+  };
+  EXPECT_EQ(targets(0.4f), (std::vector<int>{0, 1, 3, 3, 3}));
+  EXPECT_EQ(targets(0), (std::vector<int>{3, 3, 3, 3, 3}));
 }
 
 SIM_TEST(SaliencyLevels, AnOutlierChangesAlmostNothing) {
