@@ -61,13 +61,6 @@ Outcome dam(const Setting& setting) {
   Finding density = watch.density_finding();
   Finding mostly = at_most("rho / rho_0 in 95 % of the frames", watch.densest_in(0.95), 1.2);
   Finding braked = none("braked", met.speed_limited);
-  // The limit is not 0: in runs of some 1e9 particle-substeps on an H200, neighbours pressed one or two pairs
-  // of particles into one place, which the next projection parted (docs/decisions.md, "Close pairs").
-  Finding coincident = none("coincident pairs", met.coincident_pairs);
-  if (setting.size == Size::Full) {
-    coincident.limit = 20;
-    coincident.asked = 0;
-  }
   if (levels) {
     density.asked = 1.2;
     // With temporal acceleration the limit is higher, because particles that the frame does not solve overlap
@@ -82,7 +75,8 @@ Outcome dam(const Setting& setting) {
     braked.asked = 0;
   }
   return watch.outcome({density, mostly, watch.outside_finding(), braked,
-                        none("neighbours dropped", met.neighbours_dropped), coincident,
+                        none("neighbours dropped", met.neighbours_dropped),
+                        none("coincident pairs", met.coincident_pairs),
                         none("frames short of substeps", static_cast<std::uint64_t>(watch.short_frames())),
                         reported("mean density error", error / std::max(1, watch.frame())),
                         reported("fastest", watch.fastest_m_s(), "m/s")});

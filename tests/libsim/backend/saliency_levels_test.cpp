@@ -123,7 +123,7 @@ SIM_TEST(SaliencyLevels, DropsDoNotMerge) {
     level.from_host({0, 1, 0, 0, 3});
     target.from_host({9, 9, 9, 9, 9});
     Array<SaliencyRange> range(1);
-    range.from_host({SaliencyRange{.low = 0, .high = 1, .usable = 1}});
+    range.from_host({SaliencyRange{0, 1, 1, 1}});
     Array<Guards> guards(1);
     guards.zero();
     saliency_to_levels(combined.data(), range.data(), 4, s.data(), target.data(), guards.data(),
