@@ -73,8 +73,9 @@ struct Readings {
   /// Eq. 9: lower limit of the F (sum of features) that maps to s = 1; if all F are smaller, no particle has
   /// the saliency s = 1
   double saliency_floor = 0.1;
-  /// Eq. 9: below this share of rho_0 a particle is a drop of one to three particles and does not merge;
-  /// 0 = all may merge. A particle alone has 0.2, three close ones up to 0.4.
+  /// Eq. 9: below this share of rho_0 a particle does not merge; 0 = all may merge. The density counts walls.
+  /// Away from walls it is 0.2 for a particle alone, and 0.36 for three at distances of d and in a thread one
+  /// particle wide.
   double drop_density = 0.4;
   /// Duration for which a lost gaze keeps its last direction, before it follows the view's axis; a blink
   /// lasts 0.1 to 0.4 s.

@@ -48,8 +48,9 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
 void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec4* position,
                       const float* temporal, float* combined, SaliencyParts* parts, int n);
 
-/// Particles in the air, alone or in twos and threes. Their targets are at most their levels, so that they do
-/// not merge: a merged drop is larger than the drops that it replaces, and the eye sees each of them.
+/// Drops: particles of low density, alone or in threads and small groups. Their targets are at most their
+/// levels, so that they do not merge: a merged drop is larger than the drops that it replaces, and the eye
+/// sees each of them.
 struct Drops {
   const float* density = nullptr;       ///< rho / rho_0
   const std::uint8_t* level = nullptr;  ///< of each particle

@@ -118,8 +118,8 @@ TEST(TruthLevelling, ACreepingVortexUnderGravityDecays) {
   EXPECT_GT(back, 0.85);
   EXPECT_LT(back, 1.7);
 }
-/// The aim is a ratio of at most 1.25. Mixed levels resist as one level does, if less: 1.30 where one level
-/// has 1.5.
+/// The ratio is 1.30 with mixed levels and 1.5 with one level: the effect acts too strongly in both. The test
+/// allows 1.5; the aim is 1.25.
 TEST(TruthLevellingSlow, ACreepingVortexOfMixedLevelsDecays) {
   NEEDS_EFFECTS;
   const double back = cell_back({.method = MethodKind::Ours, .mixed = true}, 0.3);

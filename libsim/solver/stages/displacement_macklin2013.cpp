@@ -16,9 +16,11 @@ struct Displace {
   Neighbours neighbours;
   Boundary walls;
   Vec4* next;
-  /// positions at the substep's beginning; pushes between close particles move them too, so that these pushes
-  /// add no velocity. nullptr: pushes move predicted positions only
+  /// positions at the substep's beginning; pushes between close particles move them too, by the share that
+  /// counts as velocity, so that these pushes add none away from walls. nullptr: pushes move predicted
+  /// positions only
   Vec4* start;
+  TimeOfRest time;
   Guards* guards;
   int half;  ///< time of this pass, in half substeps since the frame's start (TroubleKey::of)
   float rest_density, tensile, wall_gap, momentum;
@@ -79,7 +81,7 @@ struct Displace {
     if (close) {
       const Parting parting = parted(slot, self, own);
       x += parting.step + parting.push;
-      if (start) start[i] = with_w(xyz(start[i]) + times * parting.push, start[i].w);
+      if (start) start[i] = with_w(xyz(start[i]) + (times / time(i)) * parting.push, start[i].w);
       if (parting.in_one_place) Witness{guards, id, half}.note(Trouble::Coincident, i);
     }
     // The momentum term repeats a share of the last projection's step: `next` still contains the positions
@@ -100,7 +102,7 @@ struct Displace {
   }
 
   /// How particle i leaves particles that are too close to it. Both parts are weighted so that a pair's
-  /// centre of mass does not move.
+  /// centre of mass does not move, if both are solved.
   struct Parting {
     /// from particles at the same position: adds velocity, and is never zero, even if the density alone would
     /// not separate the particles
@@ -148,6 +150,7 @@ void launch(FluidState& state, DisplacementView p, Vec4* start, Selection select
                                                        .walls = boundary,
                                                        .next = p.predicted_next(),
                                                        .start = start,
+                                                       .time = state.time_of_rest(),
                                                        .guards = state.guard(),
                                                        .half = 2 * state.substep,
                                                        .rest_density = k.rest_density,
@@ -181,8 +184,9 @@ void launch(FluidState& state, DisplacementView p, Vec4* start) {
   state.all_active ? launch(state, p, start, AllParticles{}) : launch(state, p, start, state.active());
 }
 
-using SubstepColumns = ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
-                                  columns(Column::PredictedNext, Column::Predicted, Column::Position)>;
+using SubstepColumns =
+    ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id, Column::Position),
+               columns(Column::PredictedNext, Column::Predicted, Column::Position)>;
 void run_displacement(FluidState& state, SubstepColumns p) { launch(state, p, p.position()); }
 
 }  // namespace

@@ -161,6 +161,7 @@ Stage parting_stage();
 /// by the share that ease_stage computes.
 Stage density_stage();
 /// Moves particles by their multipliers, and back inside the walls. The pair terms conserve momentum exactly.
+/// Pushes close pairs apart, and moves their Position too.
 Stage displacement_stage();
 /// held_at_walls_stage, missing_density_stage and wall_cells_stage record the momentum that walls and
 /// obstacles give the water: by holding particles back, by their share in the density constraint, and by the

@@ -113,26 +113,27 @@ SIM_TEST(SaliencyLevels, WhereNothingStandsOutNothingIsFullySalient) {
 }
 
 SIM_TEST(SaliencyLevels, DropsDoNotMerge) {
-  // All have the least saliency, so that Eq. 9 wants level 3. rho / rho_0 of a drop is below 0.4.
+  // All but the last have the least saliency, so that Eq. 9 wants level 3; of the last it wants level 0.
   const auto targets = [](float below) {
     Array<float> combined, s, density;
-    combined.from_host({0, 0, 0, 0, 0});
-    s.from_host({0, 0, 0, 0, 0});
-    density.from_host({0.2f, 0.39f, 0.4f, 0.9f, 0.2f});
+    combined.from_host({0, 0, 0, 0, 0, 1});
+    s.from_host({0, 0, 0, 0, 0, 0});
+    density.from_host({0.2f, 0.39f, 0.4f, 0.9f, 0.2f, 0.2f});
     Array<std::uint8_t> level, target;
-    level.from_host({0, 1, 0, 0, 3});
-    target.from_host({9, 9, 9, 9, 9});
+    level.from_host({0, 1, 0, 0, 3, 3});
+    target.from_host({9, 9, 9, 9, 9, 9});
     Array<SaliencyRange> range(1);
     range.from_host({SaliencyRange{0, 1, 1, 1}});
     Array<Guards> guards(1);
     guards.zero();
     saliency_to_levels(combined.data(), range.data(), 4, s.data(), target.data(), guards.data(),
-                       {density.data(), level.data(), below}, 5);
+                       {density.data(), level.data(), below}, 6);
     const auto found = target.to_host();
     return std::vector<int>(found.begin(), found.end());
   };
-  EXPECT_EQ(targets(0.4f), (std::vector<int>{0, 1, 3, 3, 3}));
-  EXPECT_EQ(targets(0), (std::vector<int>{3, 3, 3, 3, 3}));
+  EXPECT_EQ(targets(0.4f), (std::vector<int>{0, 1, 3, 3, 3, 0}));
+  EXPECT_EQ(targets(0), (std::vector<int>{3, 3, 3, 3, 3, 0}));
+  EXPECT_EQ(readings_of(Preset::Paper).drop_density, 0);
 }
 
 SIM_TEST(SaliencyLevels, AnOutlierChangesAlmostNothing) {
