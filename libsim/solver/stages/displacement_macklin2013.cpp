@@ -101,13 +101,13 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// How particle i leaves particles that are too close to it. Both parts are weighted so that a pair's
-  /// centre of mass does not move, if both are solved.
+  /// Displacements that separate particle i from particles that are too close. They are weighted by mass, so
+  /// that the centre of mass of two such particles stays in place, if the substep solves both.
   struct Parting {
     /// from particles at the same position: adds velocity, and is never zero, even if the density alone would
     /// not separate the particles
     Vec3 step{0, 0, 0};
-    Vec3 push{0, 0, 0};  ///< from other close particles: a tenth of the missing distance; adds no velocity
+    Vec3 push{0, 0, 0};  ///< from other close particles: a tenth of the missing distance
     bool in_one_place = false;
   };
   SIM_FN Parting parted(int slot, Vec4 self, float own) const {

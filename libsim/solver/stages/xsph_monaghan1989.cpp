@@ -35,12 +35,12 @@ struct DriftAverage {
 /// one size" and "Still water in short substeps", describes how that water comes to rest.
 ///
 /// With levels it also filters velocities (RestingWater). A new particle of a split or a merge overlaps its
-/// neighbours. The projections push them apart, and the speed of that push is an error. So the pass averages
-/// velocity changes near new particles over neighbours. The average conserves momentum, and keeps changes
-/// that all particles share, such as those by gravity and pressure. Splits and merges also raise the water's
-/// surface a little. The water then sinks for a second or two, and gains speed. More viscosity where water is
-/// at rest removes that speed. Where water moved before, the filter is weaker and the viscosity is the usual
-/// one, as the water would lose energy.
+/// neighbours. The projections push them apart, and that push gives them a speed that water would not have.
+/// So the pass averages velocity changes near new particles over neighbours. The average conserves momentum,
+/// and keeps changes that all particles share, such as those by gravity and pressure. Splits and merges also
+/// raise the water's surface a little. The water then sinks for a second or two, and gains speed. More
+/// viscosity where water is at rest removes that speed. Where water moved before, the filter is weaker and
+/// the viscosity is the usual one, as the water would lose energy.
 struct NoFilter {
   static constexpr bool filters = false, averages = false;
 };
